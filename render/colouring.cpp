@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "broadmark/collision_filter.h"
 #include "broadmark/render/palette.h"
 #include "count_steps.h"
 

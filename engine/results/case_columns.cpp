@@ -283,8 +283,8 @@ ColumnValue CaseColumn::shownValueOf(R result, S summary) const {
 }
 
 const std::vector<CaseColumn>& caseColumns() {
-  static const std::vector<CaseColumn> kColumns = makeColumns();
-  return kColumns;
+  static const std::vector<CaseColumn> columns = makeColumns();
+  return columns;
 }
 
 std::vector<const CaseColumn*> caseColumns(int ColumnShown::*place) {

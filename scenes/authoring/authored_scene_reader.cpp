@@ -246,8 +246,9 @@ class SceneReader final : public JsonEvents {
     require(world, {"min", "max"});
     Vec3 min;
     Vec3 max;
-    const bool whole = read(world, "min", min) & read(world, "max", max);
-    if (!whole) fail("'min' and 'max' are expected");
+    if (!read(world, "min", min) || !read(world, "max", max)) {
+      fail("'min' and 'max' are expected");
+    }
     part_ = Part::other;
     scene_.world = {{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}};
   }
