@@ -11,6 +11,7 @@
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/json_fields.h"
+#include "support/words.h"
 
 namespace broadmark::imports {
 namespace {
@@ -116,13 +117,9 @@ void splitWords(std::string_view line, std::vector<std::string_view>& words) {
   }
 }
 
-void splitAt(char separator, std::string_view line, std::vector<std::string_view>& cells) {
+void splitCells(char separator, std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(separator, begin), line.size());
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
+  forEachPart(separator, line, [&](std::string_view part) { cells.push_back(trimmed(part)); });
 }
 
 }  // namespace broadmark::imports

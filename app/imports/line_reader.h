@@ -59,7 +59,7 @@ class LineReader {
 bool isBlank(std::string_view line);
 /// What stands between white space in a line.
 void splitWords(std::string_view line, std::vector<std::string_view>& words);
-/// What stands between separators, without white space around it.
-void splitAt(char separator, std::string_view line, std::vector<std::string_view>& cells);
+/// The parts of a line between separators, without white space around them.
+void splitCells(char separator, std::string_view line, std::vector<std::string_view>& cells);
 
 }  // namespace broadmark::imports

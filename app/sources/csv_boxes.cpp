@@ -50,7 +50,7 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
     const std::string_view line = lines.line();
     if (imports::isBlank(line)) continue;
     if (lines.number() == 1 && isHeading(line)) continue;
-    imports::splitAt(',', line, cells);
+    imports::splitCells(',', line, cells);
     if (cells.size() != kCells) {
       lines.fail(fmt::format("{} values: 8 are expected: frame, id, min x, y, z, max x, y, z",
                              cells.size()));

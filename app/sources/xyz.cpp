@@ -26,7 +26,7 @@ ParticleColumns columnsOf(const LineReader& lines) {
   std::string_view text = lines.line().substr(key + kKey.size());
   text = text.substr(0, text.find_first_of(" \t\""));
   std::vector<std::string_view> words;
-  imports::splitAt(':', text, words);
+  imports::splitCells(':', text, words);
   std::size_t column = 0;
   bool positions = false;
   for (std::size_t i = 0; i + 2 < words.size(); i += 3) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -31,11 +30,7 @@ std::string counted(std::uint64_t count, std::string_view one, std::string_view 
 
 std::vector<std::string> splitAt(char separator, std::string_view text) {
   std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.emplace_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  forEachPart(separator, text, [&](std::string_view part) { parts.emplace_back(part); });
   return parts;
 }
 

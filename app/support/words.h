@@ -1,6 +1,7 @@
-// Numbers as people read them.
+// Texts and numbers as people read and write them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -21,7 +22,17 @@ std::string bytesText(std::uint64_t bytes);
 /// "1 case", "2 cases"; of "body" the plural is stated.
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
 
-/// What stands between separators.
+/// Calls visit(part) for each part of the text between separators, empty ones included.
+template <class Visit>
+void forEachPart(char separator, std::string_view text, const Visit& visit) {
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    visit(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+/// The parts of the text between separators, empty ones included.
 std::vector<std::string> splitAt(char separator, std::string_view text);
 
 /// The text with these characters replaced.
