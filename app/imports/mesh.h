@@ -31,8 +31,8 @@ using PointSink = std::function<void(std::span<const Point>)>;
 /// would share one. Throws InputError.
 MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink);
 
-/// What assimp reads, so many frames a second. It does so in a child process, as damaged files may
-/// crash it, or make it take all memory. Throws InputError.
+/// A file that assimp reads, at `frame_rate` frames per second. A child process reads it, as
+/// damaged files may crash assimp or exhaust the memory. Throws InputError.
 MeshTopology readWithAssimp(const std::filesystem::path& file, double frame_rate,
                             const PointSink& sink);
 

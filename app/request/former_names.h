@@ -10,7 +10,7 @@ namespace broadmark {
 /// The arguments of a command line with the present names of options.
 std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments);
 
-/// The present name of an option of the main command ("").
+/// The present name of an option of the main command.
 std::string currentOption(const std::string& option);
 
 /// The key of --param, [ALGORITHM:]NAME, with the present name of the parameter.

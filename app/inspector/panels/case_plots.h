@@ -52,7 +52,7 @@ class CasePlots : PanelContext {
   }
 
  private:
-  static constexpr std::size_t kMaxCurves = 24;  // more could not be told apart
+  static constexpr std::size_t kMaxCurves = 24;  // more are indistinguishable
   static constexpr float kPointPlace = 3;  // pixels around a point that are noted as its place
 
   using Row = OpenedResults::Row;

@@ -72,7 +72,7 @@ class ScenePanel final : public Panel {
   }
 
   std::shared_ptr<const FrameProviderRequest> seen_;  ///< what was open in the last picture
-  ParameterValues parameters_;                        ///< of that, as far as they are known
+  ParameterValues parameters_;  ///< of that recording, as far as they are known
 };
 
 }  // namespace

@@ -35,7 +35,7 @@ namespace broadmark {
 struct SecondViewRequest {
   std::shared_ptr<const FrameProviderRequest> footage;  ///< null: that of the first view
   std::optional<std::uint32_t> frame;                   ///< nothing: that of the first view
-  int lane = 0;  ///< whose answer, by number; 0: the oracle's
+  int lane = 0;  ///< the number of the answer's track; 0: the oracle's
 
   friend bool operator==(const SecondViewRequest&, const SecondViewRequest&) = default;
 };
