@@ -1,5 +1,5 @@
 // Linear bounding volume hierarchy on a compute device: bodies in Morton order, a binary radix tree
-// over them built in one step, boxes carried up from the leaves, one traversal per body.
+// over them built in one step, one traversal per body.
 // O(n log n + k) for evenly spread boxes; sizes and distribution change the time only.
 //
 // Papers: C. Lauterbach, M. Garland, S. Sengupta, D. Luebke, D. Manocha, "Fast BVH Construction on
@@ -21,6 +21,9 @@ constexpr std::uint32_t kLeaf = 0x80000000;
 struct Node {
   std::array<Aabb, 2> child;
 };
+
+/// Ranges on the level above one of `count`.
+constexpr std::size_t merged(std::size_t count) { return (count + 3) / 4; }
 
 class GpuLbvh final : public opencl::DeviceBroadPhase {
  public:
@@ -47,16 +50,17 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
 
   void makeKernels(const cl::Program& program) override {
     make_keys_ = cl::Kernel(program, "make_keys");
+    gather_ = cl::Kernel(program, "gather");
+    merge_ranges_ = cl::Kernel(program, "merge_ranges");
     build_ = cl::Kernel(program, "build");
-    refit_ = cl::Kernel(program, "refit");
     search_ = cl::Kernel(program, "search");
   }
 
   void reserve(std::size_t count) override {
-    leaves_ = context().buffer(count * sizeof(Aabb));
+    std::size_t ranges = count;
+    for (std::size_t level = count; level > 1; ranges += level) level = merged(level);
+    ranges_ = context().buffer(ranges * sizeof(Aabb));
     nodes_ = context().buffer(count * sizeof(Node));
-    parents_ = context().buffer(2 * count * sizeof(cl_uint));
-    visits_ = context().buffer(count * sizeof(cl_uint));
   }
 
   void build() override {
@@ -72,25 +76,29 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
     }
     forBodies(make_keys_, count(), boxes(), n(), low, scale, sorter().keys(), sorter().values());
     sorter().sort(kKeyBits);
-    forBodies(build_, count(), boxes(), sorter().keys(), sorter().values(), n(), leaves_, nodes_,
-              parents_, visits_);
-    forBodies(refit_, count(), leaves_, n(), nodes_, parents_, visits_);
+    forBodies(gather_, count(), boxes(), sorter().values(), n(), ranges_);
+    cl_uint first = 0;
+    for (std::size_t level = count(); level > 1; level = merged(level)) {
+      forBodies(merge_ranges_, merged(level), ranges_, first, static_cast<cl_uint>(level),
+                static_cast<cl_uint>(merged(level)));
+      first += static_cast<cl_uint>(level);
+    }
+    if (count() > 1) forBodies(build_, count() - 1, sorter().keys(), ranges_, n(), nodes_);
   }
 
   void search(const opencl::PairSink& sink) override {
-    forBodies(search_, count(), leaves_, nodes_, sorter().values(), n(), sink.pairs, sink.count,
+    forBodies(search_, count(), ranges_, nodes_, sorter().values(), n(), sink.pairs, sink.count,
               sink.capacity);
   }
 
  private:
   cl::Kernel make_keys_;
+  cl::Kernel gather_;
+  cl::Kernel merge_ranges_;
   cl::Kernel build_;
-  cl::Kernel refit_;
   cl::Kernel search_;
-  cl::Buffer leaves_;
+  cl::Buffer ranges_;  ///< leaves, then the levels of merged ranges
   cl::Buffer nodes_;
-  cl::Buffer parents_;
-  cl::Buffer visits_;
 };
 
 }  // namespace

@@ -1,6 +1,14 @@
 // Linear bounding volume hierarchy: bodies in the order of their centres along a Morton curve; a
-// binary radix tree over that order, all nodes at once; boxes from the leaves up; one traversal per
-// body.
+// binary radix tree over that order, all nodes at once; one traversal per body.
+//
+//   make_keys, sort  order of the bodies
+//   gather           leaves: the boxes in that order
+//   merge_ranges     a launch per level: the unions of 4, 16, 64 ... leaves, behind the leaves
+//   build            each node by itself: its children, and their boxes from the ranges
+//   search
+//
+// A node covers a range of leaves, so its box needs no other node: no work group waits for what
+// another writes, which OpenCL 1.2 cannot order within a kernel.
 //
 // Inner node k has its two children's boxes side by side, in one cache line. In a child's box,
 // low.w is its number (leaves have the highest bit set) and high.w the last leaf below it.
@@ -38,84 +46,86 @@ static inline int common_bits(__global const uint* keys, int n, int i, int j) {
   return difference != 0 ? (int)clz(difference) : 32 + (int)clz((uint)(i ^ j));
 }
 
-/// Finds the children of inner node i (Karras 2012), and notes the parent of each:
-/// 2 * node + which child. Inner nodes' parents stand before those of the leaves.
-static inline void link_node(__global const uint* keys, int n, int i, __global Node* nodes,
-                             __global uint* parents) {
-  const int direction =
-      common_bits(keys, n, i, i + 1) > common_bits(keys, n, i, i - 1) ? 1 : -1;
-  const int least = common_bits(keys, n, i, i - direction);
-  int reach = 2;
-  while (common_bits(keys, n, i, i + reach * direction) > least) reach *= 2;
-  int length = 0;
-  for (int step = reach / 2; step > 0; step /= 2) {
-    if (common_bits(keys, n, i, i + (length + step) * direction) > least) length += step;
-  }
-  const int other_end = i + length * direction;
-  const int common = common_bits(keys, n, i, other_end);
-  int split = 0;
-  for (int step = (length + 1) / 2;; step = (step + 1) / 2) {
-    if (common_bits(keys, n, i, i + (split + step) * direction) > common) split += step;
-    if (step <= 1) break;
-  }
-  const int middle = i + split * direction + min(direction, 0);
-  const int first = min(i, other_end);
-  const int last = max(i, other_end);
-  const uint left = first == middle ? (uint)middle | LEAF : (uint)middle;
-  const uint right = last == middle + 1 ? (uint)(middle + 1) | LEAF : (uint)(middle + 1);
-  nodes[i].child[0].low.w = as_float(left);
-  nodes[i].child[0].high.w = as_float((uint)middle);
-  nodes[i].child[1].low.w = as_float(right);
-  nodes[i].child[1].high.w = as_float((uint)last);
-  parents[(left & LEAF) != 0 ? (uint)(n - 1 + middle) : left] = 2 * (uint)i;
-  parents[(right & LEAF) != 0 ? (uint)(n + middle) : right] = 2 * (uint)i + 1;
-}
-
-/// Also puts the boxes into the leaves' order, and takes the nodes' visits back to 0.
-__kernel void build(__global const Box* boxes, __global const uint* keys,
-                    __global const uint* bodies, const uint n, __global Box* leaves,
-                    __global Node* nodes, __global uint* parents, __global uint* visits) {
+/// Puts the boxes into the leaves' order.
+__kernel void gather(__global const Box* boxes, __global const uint* bodies, const uint n,
+                     __global Box* leaves) {
   FOR_EACH_BODY(i, n) {
     PREFETCH(boxes + bodies[min(i + PREFETCHED, n - 1)]);
     leaves[i] = boxes[bodies[i]];
-    if (i + 1 == n) continue;
-    visits[i] = 0;
-    link_node(keys, (int)n, (int)i, nodes, parents);
   }
 }
 
-/// Sets a box but not its fourth components.
-static inline void set_box(volatile __global float* to, float4 low, float4 high) {
-  to[0] = low.x;
-  to[1] = low.y;
-  to[2] = low.z;
-  to[4] = high.x;
-  to[5] = high.y;
-  to[6] = high.z;
+/// How many ranges of one level a range of the next level covers.
+#define ARITY 4u
+
+static inline Box merged(Box a, Box b) {
+  a.low = fmin(a.low, b.low);
+  a.high = fmax(a.high, b.high);
+  return a;
 }
 
-/// Carries boxes up from leaf to root. Of a node's two children the first to arrive stops there;
-/// the second finds both boxes written: the fence puts its own before the count, and the count
-/// orders the other's.
-__kernel void refit(__global const Box* leaves, const uint n, volatile __global float* node_floats,
-                    __global const uint* parents, volatile __global uint* visits) {
-  FOR_EACH_BODY(i, n) {
-    float4 low = leaves[i].low;
-    float4 high = leaves[i].high;
-    uint parent = parents[n - 1 + i];
-    for (;;) {
-      const uint node = parent / 2;
-      const uint side = parent & 1;
-      set_box(node_floats + 16 * node + 8 * side, low, high);
-      mem_fence(CLK_GLOBAL_MEM_FENCE);
-      if (atomic_inc(&visits[node]) == 0) break;
-      mem_fence(CLK_GLOBAL_MEM_FENCE);
-      volatile __global const float* other = node_floats + 16 * node + 8 * (1 - side);
-      low = fmin(low, (float4)(other[0], other[1], other[2], 0));    // race: ordered by visits
-      high = fmax(high, (float4)(other[4], other[5], other[6], 0));  // race: ordered by visits
-      if (node == 0) break;
-      parent = parents[node];
+/// From the `count` ranges of one level, at `ranges` + `first`, to those of the next, behind them.
+__kernel void merge_ranges(__global Box* ranges, const uint first, const uint count,
+                    const uint merged_count) {
+  FOR_EACH_BODY(i, merged_count) {
+    Box box = ranges[first + ARITY * i];
+    for (uint k = ARITY * i + 1; k < min(ARITY * (i + 1), count); ++k) {
+      box = merged(box, ranges[first + k]);
     }
+    ranges[first + count + i] = box;
+  }
+}
+
+/// The union of the leaves [begin, end): on each level the ranges at both ends that no range of the
+/// next level covers whole.
+static inline Box bounds_of(__global const Box* ranges, uint n, uint begin, uint end) {
+  Box box = ranges[begin];
+  for (uint count = n; begin < end;) {
+    while (begin < end && begin % ARITY != 0) box = merged(box, ranges[begin++]);
+    while (begin < end && end % ARITY != 0) box = merged(box, ranges[--end]);
+    ranges += count;
+    count = (count + ARITY - 1) / ARITY;
+    begin /= ARITY;
+    end /= ARITY;
+  }
+  return box;
+}
+
+/// The child over the leaves [begin, end); `inner` is its number if it is not a leaf.
+static inline Box make_child(__global const Box* ranges, uint n, uint begin, uint end, uint inner) {
+  Box child = bounds_of(ranges, n, begin, end);
+  child.low.w = as_float(end - begin == 1 ? begin | LEAF : inner);
+  child.high.w = as_float(end - 1);
+  return child;
+}
+
+/// Finds the children of each inner node (Karras 2012).
+__kernel void build(__global const uint* keys, __global const Box* ranges, const uint leaf_count,
+                    __global Node* nodes) {
+  const int n = (int)leaf_count;
+  FOR_EACH_BODY(node, leaf_count - 1) {
+    const int i = (int)node;
+    const int direction =
+        common_bits(keys, n, i, i + 1) > common_bits(keys, n, i, i - 1) ? 1 : -1;
+    const int outside = common_bits(keys, n, i, i - direction);
+    int reach = 2;
+    while (common_bits(keys, n, i, i + reach * direction) > outside) reach *= 2;
+    int length = 0;
+    for (int step = reach / 2; step > 0; step /= 2) {
+      if (common_bits(keys, n, i, i + (length + step) * direction) > outside) length += step;
+    }
+    const int other_end = i + length * direction;
+    const int common = common_bits(keys, n, i, other_end);
+    int split = 0;
+    for (int step = (length + 1) / 2;; step = (step + 1) / 2) {
+      if (common_bits(keys, n, i, i + (split + step) * direction) > common) split += step;
+      if (step <= 1) break;
+    }
+    const uint middle = (uint)(i + split * direction + min(direction, 0));
+    const uint first = (uint)min(i, other_end);
+    const uint last = (uint)max(i, other_end);
+    nodes[i].child[0] = make_child(ranges, leaf_count, first, middle + 1, middle);
+    nodes[i].child[1] = make_child(ranges, leaf_count, middle + 1, last + 1, middle + 1);
   }
 }
 
