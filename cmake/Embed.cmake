@@ -29,7 +29,8 @@ std::string_view broadmark::${header}::${name}() {
   file(CONFIGURE OUTPUT ${base}.h @ONLY CONTENT
     "#pragma once\n#include <string_view>\nnamespace broadmark::${header} {\n${declarations}}\n")
   file(CONFIGURE OUTPUT ${base}.cpp @ONLY CONTENT "#include \"${header}.h\"\n${definitions}")
-  set_source_files_properties(${base}.cpp PROPERTIES OBJECT_DEPENDS "${paths}")
+  set_source_files_properties(${base}.cpp PROPERTIES OBJECT_DEPENDS "${paths}"
+    SKIP_UNITY_BUILD_INCLUSION ON)  # a unity file drops OBJECT_DEPENDS
   target_sources(${target} PRIVATE ${base}.cpp)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
