@@ -58,45 +58,42 @@ __kernel void gather(__global const Box* boxes, __global const uint* bodies, con
 /// How many ranges of one level a range of the next level covers.
 #define ARITY 4u
 
-static inline Box merged(Box a, Box b) {
-  a.low = fmin(a.low, b.low);
-  a.high = fmax(a.high, b.high);
-  return a;
+static inline void extend(Box* box, __global const Box* by) {
+  box->low = fmin(box->low, by->low);
+  box->high = fmax(box->high, by->high);
 }
 
 /// From the `count` ranges of one level, at `ranges` + `first`, to those of the next, behind them.
 __kernel void merge_ranges(__global Box* ranges, const uint first, const uint count,
-                    const uint merged_count) {
+                           const uint merged_count) {
   FOR_EACH_BODY(i, merged_count) {
     Box box = ranges[first + ARITY * i];
     for (uint k = ARITY * i + 1; k < min(ARITY * (i + 1), count); ++k) {
-      box = merged(box, ranges[first + k]);
+      extend(&box, ranges + first + k);
     }
     ranges[first + count + i] = box;
   }
 }
 
-/// The union of the leaves [begin, end): on each level the ranges at both ends that no range of the
-/// next level covers whole.
-static inline Box bounds_of(__global const Box* ranges, uint n, uint begin, uint end) {
+/// Writes the child over the leaves [begin, end): its box is the union of the ranges, on each level
+/// at both ends, that no range of the next level covers whole. `inner` is its number if it is not a
+/// leaf.
+static inline void put_child(__global Box* child, __global const Box* ranges, uint n, uint begin,
+                             uint end, uint inner) {
+  const uint number = end - begin == 1 ? begin | LEAF : inner;
+  const uint last = end - 1;
   Box box = ranges[begin];
   for (uint count = n; begin < end;) {
-    while (begin < end && begin % ARITY != 0) box = merged(box, ranges[begin++]);
-    while (begin < end && end % ARITY != 0) box = merged(box, ranges[--end]);
+    while (begin < end && begin % ARITY != 0) extend(&box, ranges + begin++);
+    while (begin < end && end % ARITY != 0) extend(&box, ranges + --end);
     ranges += count;
     count = (count + ARITY - 1) / ARITY;
     begin /= ARITY;
     end /= ARITY;
   }
-  return box;
-}
-
-/// The child over the leaves [begin, end); `inner` is its number if it is not a leaf.
-static inline Box make_child(__global const Box* ranges, uint n, uint begin, uint end, uint inner) {
-  Box child = bounds_of(ranges, n, begin, end);
-  child.low.w = as_float(end - begin == 1 ? begin | LEAF : inner);
-  child.high.w = as_float(end - 1);
-  return child;
+  box.low.w = as_float(number);
+  box.high.w = as_float(last);
+  *child = box;
 }
 
 /// Finds the children of each inner node (Karras 2012).
@@ -124,8 +121,8 @@ __kernel void build(__global const uint* keys, __global const Box* ranges, const
     const uint middle = (uint)(i + split * direction + min(direction, 0));
     const uint first = (uint)min(i, other_end);
     const uint last = (uint)max(i, other_end);
-    nodes[i].child[0] = make_child(ranges, leaf_count, first, middle + 1, middle);
-    nodes[i].child[1] = make_child(ranges, leaf_count, middle + 1, last + 1, middle + 1);
+    put_child(&nodes[i].child[0], ranges, leaf_count, first, middle + 1, middle);
+    put_child(&nodes[i].child[1], ranges, leaf_count, middle + 1, last + 1, middle + 1);
   }
 }
 
