@@ -170,7 +170,7 @@ void inspectOffscreen(Plan plan, const fs::path& script_file) {
   int width = request.picture.width;
   int height = request.picture.height;
   auto target = std::make_unique<Framebuffer>(gl, width, height, 1);
-  // The first pictures settle sizes.
+  // Sizes are final only after the first pictures.
   for (int calm = 0; calm < 4 && !inspector.closing();) {
     if (script) play(*script, inspector, input);
     if (const auto size = script ? script->player.takeResize() : std::nullopt) {
@@ -187,7 +187,7 @@ void inspectOffscreen(Plan plan, const fs::path& script_file) {
     }
     const bool busy = (script && !script->player.done()) || inspector.lively();
     calm = busy ? 0 : calm + 1;
-    if (busy && input.empty()) inspector.session().runs.settle(std::chrono::milliseconds(2));
+    if (busy && input.empty()) inspector.session().runs.waitUntilIdle(std::chrono::milliseconds(2));
   }
   script.reset();  // the last picture goes where the user wants it
   if (!request.screenshot.empty()) writePng(request.screenshot, target->read());

@@ -12,6 +12,7 @@
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/names.h"
+#include "request/former_names.h"
 #include "support/words.h"
 
 namespace broadmark {
@@ -120,7 +121,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
          inspector.session().open(words[0]);
          player.pause();
        }},
-      {"wait", "PICTURES or settled", 1, 1, "until everything is computed, or for some pictures",
+      {"wait", "PICTURES or idle", 1, 1, "until everything is computed, or for some pictures",
        &P::wait},
       {"expect", "VALUE RELATION TEXT", 3, 3,
        "waits until a value of the session is =, !=, <, >, <= or >= to the text, or contains it "
@@ -338,14 +339,13 @@ void ScriptPlayer::drag(const Words& words, Inspector&) {
 }
 
 void ScriptPlayer::wait(const Words& words, Inspector&) {
-  if (words[0] != "settled") {
-    return pause(static_cast<int>(number(words[0])));
-  }
+  const std::string until = currentScriptWord(words[0]);
+  if (until != "idle") return pause(static_cast<int>(number(until)));
   const auto start = std::chrono::steady_clock::now();
   int pictures = 0;
   steps_.push_back([this, start, pictures](Inspector& inspector, InputQueue&) mutable {
     if (secondsSince(start) > 10 * kPatience) fail("still computing");
-    return ++pictures > 2 && inspector.session().runs.settled();
+    return ++pictures > 2 && inspector.session().runs.isIdle();
   });
 }
 

@@ -12,16 +12,17 @@
 namespace broadmark {
 namespace {
 
-struct FormerOption {
+struct FormerName {
   std::string_view command;  ///< "": the main command
   std::string_view former;
   std::string_view current;
 };
 
-constexpr FormerOption kFormerOptions[] = {
+constexpr FormerName kFormerNames[] = {
     {"", "--most-seconds", "--max-seconds"},
     {"duel", "--seconds", "--max-seconds"},
     {"duel", "--with", "--baseline-program"},
+    {"script", "settled", "idle"},
 };
 
 /// The present name; where it differs, one line says so, once.
@@ -33,11 +34,11 @@ std::string renamed(std::string_view former, std::string_view current) {
   return std::string(current);
 }
 
-std::string currentOption(std::string_view command, std::string_view option) {
-  for (const FormerOption& known : kFormerOptions) {
-    if (known.command == command && known.former == option) return renamed(option, known.current);
+std::string currentName(std::string_view command, std::string_view name) {
+  for (const FormerName& known : kFormerNames) {
+    if (known.command == command && known.former == name) return renamed(name, known.current);
   }
-  return std::string(option);
+  return std::string(name);
 }
 
 }  // namespace
@@ -48,12 +49,14 @@ std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments) 
   for (std::string& argument : arguments) {
     if (argument == "--") break;
     const std::size_t end = std::min(argument.find('='), argument.size());
-    argument = currentOption(command, argument.substr(0, end)) + argument.substr(end);
+    argument = currentName(command, argument.substr(0, end)) + argument.substr(end);
   }
   return arguments;
 }
 
-std::string currentOption(const std::string& option) { return currentOption("", option); }
+std::string currentOption(const std::string& option) { return currentName("", option); }
+
+std::string currentScriptWord(const std::string& word) { return currentName("script", word); }
 
 std::string currentParameterKey(const std::string& key) {
   const std::size_t colon = key.rfind(':');

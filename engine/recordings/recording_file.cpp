@@ -141,29 +141,29 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo&
 }
 
 void RecordingFile::append(std::vector<std::byte>& block) {
-  settle();
+  waitForWrite();
   size_ += block.size();
   std::swap(block, handed_);
   constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
   if (handed_.size() < kLarge) return store(handed_);
-  // Deferred, that is in settle(), where the system grants no more threads.
+  // Deferred, that is in waitForWrite(), where the system grants no more threads.
   writing_ = std::async(std::launch::async | std::launch::deferred, [this] { store(handed_); });
 }
 
 std::string RecordingFile::finish() {
   complete();
-  settle();
+  waitForWrite();
   named_->commit();
   return hasher_.hex();
 }
 
 FileDescriptor RecordingFile::finishTemporary() {
   complete();
-  settle();
+  waitForWrite();
   return std::move(unnamed_);
 }
 
-void RecordingFile::settle() {
+void RecordingFile::waitForWrite() {
   if (writing_.valid()) writing_.get();
 }
 

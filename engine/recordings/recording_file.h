@@ -132,7 +132,7 @@ class RecordingFile {
 
  private:
   /// Waits until the last block is written. Throws InputError when that failed.
-  void settle();
+  void waitForWrite();
   void store(std::span<const std::byte> bytes);
 
   SceneInfo scene_;

@@ -155,7 +155,7 @@ void printPictureTimes(const Gl& gl, const std::string& crowd) {
   watched.drawUntil([](const Snapshot& snapshot) { return snapshot.frame == 0; });
   session.playback.goTo(1);  // in frame 0 no algorithm has found anything yet
   watched.drawUntil([](const Snapshot& snapshot) { return snapshot.structure != nullptr; });
-  session.runs.settle(std::chrono::seconds(60));
+  session.runs.waitUntilIdle(std::chrono::seconds(60));
   // Pictures of the same frame cost little while nothing turns: these are no measure.
   const auto print = [&](const char* what, std::vector<double> times, std::size_t changes) {
     const double seconds = std::accumulate(times.begin(), times.end(), 0.0) / 1000;

@@ -67,7 +67,7 @@ TEST_F(HostileInput, SettingsOfTheOriginalWriteTheirLogHereOnly) {
 TEST_F(HostileInput, ScriptsWriteHereOnly) {
   if (!parts::kInspector.included) GTEST_SKIP() << "the inspector is left out of this build";
   const auto play = [&](const std::string& script) {
-    writeFile(file("here/script.txt"), "wait settled\n" + script);
+    writeFile(file("here/script.txt"), "wait idle\n" + script);
     return Arguments{"--headless", "--ui",       "freefall", "--objects", "5",      "--frames", "2",
                      "--script",   "script.txt", "--gl",     "auto",      "--size", "400x300"};
   };
@@ -79,10 +79,10 @@ TEST_F(HostileInput, ScriptsWriteHereOnly) {
        {fmt::format("places \"{}/x\"\n", elsewhere),
         fmt::format("screenshot \"{}/x\"\n", elsewhere),
         fmt::format("key Ctrl+S\nenter File/name \"{}/x.aabbs\"\n"
-                    "wait settled\n",
+                    "wait idle\n",
                     elsewhere),
         fmt::format("panel Batch\nenter Batch/output \"{}/out\"\nclick Batch/Start\n"
-                    "wait settled\n",
+                    "wait idle\n",
                     elsewhere)}) {
     expectRefusedHere(play(script), script);
   }

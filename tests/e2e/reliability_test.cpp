@@ -121,9 +121,9 @@ std::vector<Step> steps() {
        .texts = {{"saved.aabbs", "old"},
                  {"scene.json", "old"},
                  {"script.txt",
-                  "wait settled\n"
+                  "wait idle\n"
                   "key Ctrl+S\nenter File/name saved.aabbs\nclick File/Save\n"
-                  "expect dialog = no\nwait settled\n"
+                  "expect dialog = no\nwait idle\n"
                   "click \"Author/From this frame\"\nexpect author.shown = yes\n"
                   "key Ctrl+S\nenter File/name scene\nclick File/Save\n"
                   "expect author.modified = no\nwrite author.bodies bodies.txt\n"}},

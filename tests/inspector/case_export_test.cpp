@@ -21,7 +21,7 @@ class CaseExportTest : public testing::Test {
  protected:
   CaseExportTest() : session(algorithmsAndFaultyOnes()) {}
 
-  RunProgress settle() { return settled(session); }
+  RunProgress waitUntilIdle() { return tests::waitUntilIdle(session); }
 
   /// Goes to the first mismatch of an algorithm.
   RunProgress findMismatch(const std::string& algorithm) {
@@ -31,8 +31,8 @@ class CaseExportTest : public testing::Test {
     session.draft.simulate();
     setParameters(*session.lanes.add(algorithm).parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
-    session.mismatches.goToNext(settle());
-    const RunProgress seen = settle();
+    session.mismatches.goToNext(waitUntilIdle());
+    const RunProgress seen = waitUntilIdle();
     EXPECT_TRUE(seen.stop) << "the fault did not show";
     return seen;
   }
@@ -52,9 +52,9 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     session.lanes.clear();
     const RunProgress seen = findMismatch(algorithm);
     session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / algorithm);
-    settle();
+    waitUntilIdle();
     const CaseExport::Report report = waitForEnd();
-    settle();
+    waitUntilIdle();
     EXPECT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
     ASSERT_EQ(report.state, State::done) << report.failure;
     EXPECT_EQ(report.whole_bodies, 200U);
@@ -70,7 +70,7 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     EXPECT_EQ(written->scene().frames, report.now.frames);
 
     session.openExport(session.jobs.get<CaseExport>().report());
-    const RunProgress opened = settle();
+    const RunProgress opened = waitUntilIdle();
     EXPECT_EQ(opened.scene.objects, report.now.bodies);
     ASSERT_TRUE(opened.snapshot);
     EXPECT_EQ(opened.snapshot->frame, report.now.frames);
@@ -91,7 +91,7 @@ TEST_F(CaseExportTest, BadFilesAreTold) {
   const RunProgress seen = findMismatch("faulty");
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.posrot");
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "no/a.aabbs");
-  settle();
+  waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 2U);
   EXPECT_THAT(session.notices.errors[0],
               testing::AllOf(testing::HasSubstr("a.posrot"), testing::HasSubstr(".aabbs")));
@@ -103,7 +103,7 @@ TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
   const RunProgress seen = findMismatch("faulty");
   session.draft.simulate();
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.aabbs");
-  settle();
+  waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("another scene"));
 }
@@ -143,9 +143,9 @@ TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
   right.algorithm = builtinAlgorithms().front();
   right.parameters.clear();
   session.exportCase(right, seen.snapshot, directory / "a.aabbs");
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(waitForEnd().state, State::failed);
-  settle();
+  waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
 }
@@ -154,9 +154,9 @@ TEST_F(CaseExportTest, TheSearchTellsWhenThereIsNoMismatch) {
   setParameters(session.draft.scene(), {{"objects", "50"}, {"frames", "8"}});
   session.draft.simulate();
   session.lanes.add("sap");
-  session.mismatches.goToNext(settle());
+  session.mismatches.goToNext(waitUntilIdle());
   EXPECT_TRUE(session.mismatches.searching());
-  settle();
+  waitUntilIdle();
   EXPECT_FALSE(session.mismatches.searching());
   EXPECT_EQ(session.playback.frame(), 8U);
   EXPECT_THAT(session.notices.status.text,
@@ -165,18 +165,18 @@ TEST_F(CaseExportTest, TheSearchTellsWhenThereIsNoMismatch) {
 
 TEST_F(CaseExportTest, TheSearchGoesOnFromMismatchToMismatch) {
   const std::uint32_t first = findMismatch("faulty-extra").stop->frame;
-  RunProgress seen = settle();
+  RunProgress seen = waitUntilIdle();
   session.mismatches.goToNext(seen);
-  seen = settle();
+  seen = waitUntilIdle();
   const std::uint32_t second = seen.snapshot->frame;
   EXPECT_GT(second, first);
   EXPECT_TRUE(seen.snapshot->difference.isMismatch());
   // Those known already are gone to directly.
   session.playback.step(-static_cast<int>(session.playback.frame()));
-  settle();
-  session.mismatches.goToNext(settle());
+  waitUntilIdle();
+  session.mismatches.goToNext(waitUntilIdle());
   EXPECT_FALSE(session.mismatches.searching());
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(session.playback.frame(), first);
 }
 
@@ -185,7 +185,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   ASSERT_TRUE(seen.stop);
   const std::uint32_t wrong = seen.stop->frame;
   session.saveRecording(directory / "run.aabbs");
-  settle();
+  waitUntilIdle();
   Results results;
   CaseResult one;
   one.id = "some/case";
@@ -216,7 +216,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Cases"));
 
   session.openCase(directory / "r.json", "some/case");
-  const RunProgress opened = settle();
+  const RunProgress opened = waitUntilIdle();
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_EQ(session.lanes.list.size(), 1U);
   EXPECT_EQ(opened.snapshot->frame, wrong);

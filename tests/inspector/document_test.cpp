@@ -31,7 +31,7 @@ AuthoredScene threeBodies() {
 
 class AuthoringTest : public testing::Test {
  protected:
-  RunProgress settle() { return settled(session); }
+  RunProgress waitUntilIdle() { return tests::waitUntilIdle(session); }
 
   Session session{builtinAlgorithms()};
   TemporaryDirectory directory;
@@ -42,7 +42,7 @@ TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
     if (algorithm.family != "GPU") session.lanes.add(algorithm.id);
   }
   session.document.start({});
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   ASSERT_TRUE(seen.snapshot);
   EXPECT_TRUE(seen.snapshot->boxes->empty());
   EXPECT_TRUE(session.document.atRest());
@@ -52,19 +52,19 @@ TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
 
 TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
   session.document.start(threeBodies());
-  const RunProgress first = settle();
+  const RunProgress first = waitUntilIdle();
   ASSERT_EQ(first.snapshot->boxes->size(), 3U);
   const std::uint64_t scene = first.footage->scene;
   EXPECT_NE(scene, 0U);
   session.selection.select({1});
   session.document.edit([](SceneEditor& editor) { editor.duplicate({0, 5, 0}); });
-  RunProgress seen = settle();
+  RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.footage->scene, scene);
   EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
   EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{3});
   EXPECT_TRUE(session.document.isModified());
   session.document.edit(&SceneEditor::undo);
-  seen = settle();
+  seen = waitUntilIdle();
   EXPECT_EQ(*seen.snapshot->boxes, *first.snapshot->boxes);
   EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{1});
   EXPECT_FALSE(session.document.isModified());
@@ -72,7 +72,7 @@ TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
 
 TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   session.document.start(threeBodies());
-  settle();
+  waitUntilIdle();
   session.selection.select({2, 0, 7});
   EXPECT_THAT(session.document.editor.selection(), testing::ElementsAre(0, 2));
   session.selection.toggle({1});
@@ -87,33 +87,33 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   // What is selected elsewhere is none of the document's business.
   setParameters(session.draft.scene(), {{"objects", "40"}, {"frames", "5"}});
   session.draft.simulate();
-  settle();
+  waitUntilIdle();
   session.selection.select({30});
   EXPECT_EQ(session.document.editor.selection().size(), 3U);
 }
 
 TEST_F(AuthoringTest, GroupsOfTheDocumentAreSelectedAsOne) {
   session.document.start(threeBodies());
-  settle();
+  waitUntilIdle();
   session.selection.select({0, 2});
   session.document.edit(&SceneEditor::group);
   EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(0, 2));
   EXPECT_THAT(session.selection.whole({1}), testing::ElementsAre(1));
   session.draft.simulate();
-  settle();
+  waitUntilIdle();
   EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(2)) << "of another scene";
 }
 
 TEST_F(AuthoringTest, AnotherWorldIsAnotherSceneToLookAt) {
   session.document.start(threeBodies());
-  const std::uint64_t before = settle().footage->scene;
+  const std::uint64_t before = waitUntilIdle().footage->scene;
   session.document.edit([](SceneEditor& e) { e.setWorld({{-99, -99, -99, 0}, {99, 99, 99, 0}}); });
-  EXPECT_NE(settle().footage->scene, before);
+  EXPECT_NE(waitUntilIdle().footage->scene, before);
 }
 
 TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
   session.document.start(threeBodies());
-  settle();
+  waitUntilIdle();
   session.document.edit([](SceneEditor& editor) { editor.setName("a/b"); });
   EXPECT_EQ(session.notices.errors.size(), 1U);
   EXPECT_EQ(session.document.editor.scene(), threeBodies());
@@ -131,7 +131,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
   EXPECT_FALSE(session.document.isModified());
   session.document.start({});
   session.open(directory / "three.json");
-  settle();
+  waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.shown());
   EXPECT_EQ(session.document.editor.scene(), scene);
@@ -141,7 +141,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
 
 TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
   session.document.start(threeBodies());
-  settle();
+  waitUntilIdle();
   writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
   session.open(directory / "bad.json");
   session.open(directory / "missing.json");
@@ -168,17 +168,17 @@ TEST_F(AuthoringTest, UnsavedChangesWaitForADecision) {
 
 TEST_F(AuthoringTest, PlayingSimulatesAndAnEditReturnsToTheStart) {
   session.document.start(threeBodies());
-  settle();
+  waitUntilIdle();
   session.play(true);
   EXPECT_TRUE(session.document.shown());
   EXPECT_FALSE(session.document.atRest());
   session.playback.seek(12);
-  RunProgress seen = settle();
+  RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.snapshot->frame, 12U);
   EXPECT_NE(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
   session.document.edit([](SceneEditor& editor) { editor.setName("Other"); });
-  seen = settle();
+  seen = waitUntilIdle();
   EXPECT_TRUE(session.document.atRest());
   EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
 }
@@ -187,9 +187,9 @@ TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
   setParameters(session.draft.scene(), {{"objects", "30"}, {"frames", "20"}});
   session.draft.simulate();
   session.playback.seek(9);
-  const RunProgress live = settle();
+  const RunProgress live = waitUntilIdle();
   session.document.startFromFrame();
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.atRest());
   EXPECT_TRUE(session.document.isModified());
@@ -204,15 +204,15 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
   setParameters(session.draft.scene(), {{"objects", "30"}, {"frames", "20"}});
   session.draft.simulate();
   session.playback.seek(9);
-  settle();
+  waitUntilIdle();
   session.saveRecording(directory / "some.aabbs");
-  settle();
+  waitUntilIdle();
   session.open(directory / "some.aabbs");
-  settle();
+  waitUntilIdle();
   session.playback.seek(4);
-  const RunProgress recorded = settle();
+  const RunProgress recorded = waitUntilIdle();
   session.document.startFromFrame();
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(seen.snapshot->boxes->size(), recorded.snapshot->boxes->size());
   EXPECT_TRUE(session.document.atRest());
@@ -229,18 +229,18 @@ TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
     EXPECT_GT(document.editor.scene().bodies.size(), before) << document.brushes[brush].listing.id;
     EXPECT_NEAR(document.editor.selectionCentre()[0], document.paint_at[0], 12);
   }
-  EXPECT_EQ(settle().snapshot->boxes->size(), document.editor.scene().bodies.size());
+  EXPECT_EQ(waitUntilIdle().snapshot->boxes->size(), document.editor.scene().bodies.size());
 }
 
 TEST_F(AuthoringTest, BakesTheWholeScene) {
   session.document.start(threeBodies());
   session.document.bake(directory / "three");
   session.jobs.get<BackgroundBake>().wait();
-  settle();
+  waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done);
   session.open(directory / "three.aabbs");
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.scene.objects, 3U);
   EXPECT_EQ(seen.scene.name, "Three");

@@ -31,12 +31,12 @@ inline std::vector<Algorithm> algorithmsAndFaultyOnes() {
 /// The limit on a test's time is the only one.
 inline constexpr std::chrono::hours kForever{24};
 
-/// Commits, waits, and takes note, several times, as pictures do.
-inline RunProgress settled(Session& session) {
+/// Commits, waits and advances several times, as pictures do; returns the last progress.
+inline RunProgress waitUntilIdle(Session& session) {
   RunProgress seen;
   for (int picture = 0; picture < 4; ++picture) {
     session.commit();
-    EXPECT_TRUE(session.runs.settle(kForever));
+    EXPECT_TRUE(session.runs.waitUntilIdle(kForever));
     session.runs.look([&](const RunProgress& progress) {
       session.advance(progress, 0);
       seen = progress;

@@ -55,10 +55,10 @@ class InspectorTest : public testing::Test {
   }
 
   /// Draws until the queue is empty and all is computed.
-  void settle() {
+  void waitUntilIdle() {
     for (int i = 0; i < 400; ++i) {
       draw();
-      inspector.session().runs.settle(kForever);
+      inspector.session().runs.waitUntilIdle(kForever);
       if (i > 2 && input.empty()) return;
     }
   }
@@ -112,26 +112,26 @@ TEST_F(InspectorTest, DrawsWithNothingOpen) {
 TEST_F(InspectorTest, ClickingSimulatesAndKeysStep) {
   draw(3);
   click("Scene/Simulate");
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("bodies"), "40");
   key(GLFW_KEY_RIGHT);
   key(GLFW_KEY_RIGHT);
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("shown_frame"), "2");
   key(GLFW_KEY_END);
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("shown_frame"), "20");
 }
 
 TEST_F(InspectorTest, LettersTypedIntoAnInputAreNoShortcuts) {
   draw(3);
   click("Scene/Simulate");
-  settle();
+  waitUntilIdle();
   click("Scene/objects");
-  settle();
+  waitUntilIdle();
   key(GLFW_KEY_SPACE);
   key(GLFW_KEY_END);
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("playing"), "no");
   EXPECT_EQ(value("frame"), "0");
 }
@@ -144,7 +144,7 @@ TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
   session.draft.simulate();
   session.lanes.add("faulty");
   session.playback.seek(300);
-  settle();
+  waitUntilIdle();
   const std::string wrong = value("stop_frame");
   ASSERT_NE(wrong, "") << "the fault did not show";
   inspector.session().notices.bringUp("Timeline");
@@ -175,7 +175,7 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
     height = h;
     draw(2);
   }
-  settle();
+  waitUntilIdle();
   EXPECT_NE(inspector.ui().find("Scene/Simulate"), nullptr);
 }
 
@@ -183,7 +183,7 @@ TEST_F(InspectorTest, LooksAsItDid) {
   inspector.session().draft.choose("brownian");
   setParameters(inspector.session().draft.scene(), {{"engine", "kinematic"}});
   inspector.session().draft.simulate();
-  settle();
+  waitUntilIdle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/inspector.png")));
 }
 
@@ -196,7 +196,7 @@ TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
   session.document.add([&] { return session.document.stroke(); });
   session.document.tools.tool = Tool::brush;
   colourBy("correctness");  // whose legend has four rows, for which there is no room
-  settle();
+  waitUntilIdle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/authored.png")));
 }
 
@@ -204,29 +204,29 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
   draw(3);
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
   click("Scene/Simulate");
-  settle();
+  waitUntilIdle();
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
   inspector.session().open(vanishingBodies(directory, 40));
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(inspector.ui().find("Scene/objects"), nullptr);
   EXPECT_EQ(value("source"), "recording: vanishing.broadmark");
   click("Scene/draft");
-  settle();
+  waitUntilIdle();
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
 }
 
 TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
   inspector.session().draft.simulate();
   inspector.session().lanes.add("sap");
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("legend.oracle"), "") << "in frame 0 no algorithm answers";
   key(GLFW_KEY_RIGHT);
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("legend.oracle"), value("legend"));
   EXPECT_THAT(value("view.answer"), testing::HasSubstr("sap reports"));
   EXPECT_EQ(value("view.oracle"), "the oracle finds the same");
   colourBy("motion");  // which has nothing to do with the answer
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("legend.oracle"), "");
 }
 
@@ -236,13 +236,13 @@ TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
   draw(3);
   EXPECT_THAT(value("error"), testing::HasSubstr("/nowhere/at all.aabbs"));
   click("Error/OK");
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("error"), "");
 }
 
 TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
   inspector.session().draft.simulate();
-  settle();
+  waitUntilIdle();
   ASSERT_NE(inspector.ui().find("View/scene"), nullptr);
   const WidgetPlace view = *inspector.ui().find("View/scene");
   // Somewhere in the view there are bodies.
@@ -250,20 +250,20 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
     const float x = 0.3F + 0.05F * static_cast<float>(i % 9);
     const float y = 0.3F + 0.05F * static_cast<float>(i / 9);
     press({view.min.x + x * (view.max.x - view.min.x), view.min.y + y * (view.max.y - view.min.y)});
-    settle();
+    waitUntilIdle();
   }
   EXPECT_EQ(value("selection"), "1");
   key(GLFW_KEY_ESCAPE);
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("selection"), "0");
 }
 
 TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
   inspector.session().open(vanishingBodies(directory, 40));
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("bodies"), "40");
   key(GLFW_KEY_END);
-  settle();
+  waitUntilIdle();
   ASSERT_EQ(value("shown_frame"), "20");
   EXPECT_EQ(value("bodies"), "20");
   const WidgetPlace view = *inspector.ui().find("View/scene");
@@ -272,7 +272,7 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
     const float x = 0.3F + 0.05F * static_cast<float>(i % 9);
     const float y = 0.3F + 0.05F * static_cast<float>(i / 9);
     press({view.min.x + x * (view.max.x - view.min.x), view.min.y + y * (view.max.y - view.min.y)});
-    settle();
+    waitUntilIdle();
     const auto& bodies = inspector.session().selection.bodies();
     picked.insert(bodies.begin(), bodies.end());
   }
@@ -282,25 +282,25 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
 
 TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
   inspector.session().open(vanishingBodies(directory, 40));
-  settle();
+  waitUntilIdle();
   inspector.session().notices.bringUp("Bodies");
   inspector.session().selection.select({37});
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("selected_body"), "present");
   for (int frame = 0; frame < 5; ++frame) key(GLFW_KEY_RIGHT);
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("selected_body"), "absent: vanished in frame 3");
   const std::string camera = value("camera.distance");
   key(GLFW_KEY_F);  // there is nowhere to fly to
-  settle();
+  waitUntilIdle();
   EXPECT_EQ(value("camera.distance"), camera);
 }
 
 TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
   inspector.session().open(vanishingBodies(directory, 40));
-  settle();
+  waitUntilIdle();
   key(GLFW_KEY_END);
-  settle();
+  waitUntilIdle();
   for (const ColourMode& mode : colourModes()) {
     std::istringstream words(value("legend"));
     int bodies = 0;
@@ -309,7 +309,7 @@ TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
     }
     EXPECT_EQ(bodies, 20) << mode.id << ": " << value("legend");
     key(GLFW_KEY_C);
-    settle();
+    waitUntilIdle();
   }
 }
 
@@ -317,11 +317,11 @@ TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
 TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   inspector.session().draft.simulate();
   inspector.session().lanes.add("grid-bf-mt");
-  settle();
+  waitUntilIdle();
   std::set<std::string> pressed;
   for (const auto& panel : inspector.panels()) {
     inspector.session().notices.bringUp(panel.name);
-    settle();
+    waitUntilIdle();
     for (int round = 0; round < 60; ++round) {
       std::string next;
       for (const auto& [name, place] : inspector.ui().places()) {
@@ -333,12 +333,12 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
       }
       if (next.empty()) break;
       click(next);
-      settle();
+      waitUntilIdle();
       key(GLFW_KEY_ESCAPE);
-      settle();
+      waitUntilIdle();
       inspector.session().notices.errors.clear();
       inspector.session().notices.bringUp(panel.name);
-      settle();
+      waitUntilIdle();
     }
   }
   EXPECT_GT(pressed.size(), 30U);
@@ -352,7 +352,7 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
   height = 700;
   inspector.session().draft.simulate();
   inspector.session().lanes.add("grid-bf-mt");
-  settle();
+  waitUntilIdle();
   const auto press = [&](Key which, const std::vector<Key>& held = {}) {
     for (const Key each : held) {
       input.push({.kind = InputEvent::Kind::key, .code = each, .down = true});
@@ -446,7 +446,7 @@ TEST_P(RandomEvents, DoNoHarm) {
                            GLFW_KEY_S};
   inspector.session().draft.simulate();
   inspector.session().lanes.add("sap");
-  settle();
+  waitUntilIdle();
   for (int event = 0; event < events; ++event) {
     switch (below(7)) {
       case 0:
@@ -489,7 +489,7 @@ TEST_P(RandomEvents, DoNoHarm) {
       document.edit([](scenes::SceneEditor& editor) { editor.undo(); });
     }
   }
-  settle();
+  waitUntilIdle();
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomEvents, testing::Range(1U, 21U));

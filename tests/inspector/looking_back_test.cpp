@@ -24,7 +24,7 @@ class LookingBackTest : public testing::Test {
 
   RunProgress seek(std::uint32_t frame) {
     session.playback.goTo(frame);
-    return settled(session);
+    return tests::waitUntilIdle(session);
   }
 
   /// The frames that it has to have been run to.
@@ -101,14 +101,14 @@ TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
   watched.draft.simulate();
   watched.lanes.add("bf");
   watched.playback.goTo(100);
-  settled(watched);
+  waitUntilIdle(watched);
   std::optional<RunProgress> first;
   before_step = [&] {
     if (!first) watched.runs.look([&](const RunProgress& progress) { first = progress; });
   };
   watched.view.structure = true;
   watched.playback.goTo(90);
-  settled(watched);
+  waitUntilIdle(watched);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->doing, "running bf again up to frame 90");
   EXPECT_EQ(first->snapshot->frame, 90U);
@@ -124,7 +124,7 @@ TEST_F(LookingBackTest, WhoPlaysOnHasEveryStateRight) {
   session.play(true);
   for (int picture = 0; picture < 2000 && session.playback.frame() < 60; ++picture) {
     session.commit();
-    session.runs.settle(kForever);
+    session.runs.waitUntilIdle(kForever);
     session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
   }
   const RunProgress seen = seek(session.playback.frame());
@@ -141,7 +141,7 @@ TEST_F(LookingBackTest, WhatWasNotCheckedIsRunAgain) {
   simulate("faulty", 300);
   EXPECT_EQ(seek(1).lanes[0].frame, 300U);
   session.runs.look([&](const RunProgress& progress) { session.mismatches.goToNext(progress); });
-  const RunProgress seen = settled(session);
+  const RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.stop) << "the fault did not show";
   EXPECT_EQ(seen.snapshot->frame, seen.stop->frame);
   EXPECT_TRUE(seen.snapshot->difference.isMismatch());

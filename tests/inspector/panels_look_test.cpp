@@ -103,7 +103,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
       session.document.add([this] { return session.document.stroke(); });
     }
     session.document.edit(&SceneEditor::selectAll);
-    settled(session);
+    waitUntilIdle(session);
 
     session.draft.choose("brownian");
     setParameters(session.draft.scene(), {{"engine", "kinematic"}});
@@ -115,18 +115,18 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     parallel.run.threads = 2;
     session.lanes.changed();
     session.playback.goTo(40);
-    settled(session);
+    waitUntilIdle(session);
     session.startDuel(20);
     session.commit();
     session.jobs.get<BackgroundDuel>().wait();
 
     setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
-    settled(session);
+    waitUntilIdle(session);
     session.showSecond(true);
     session.timeline.select(5, 30);
     session.results.emplace("results.json", threeCases(), session.lanes.algorithms());
-    settled(session);
+    waitUntilIdle(session);
     session.notices.wanted_panels.clear();
   }
 

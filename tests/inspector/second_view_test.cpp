@@ -63,7 +63,7 @@ class SecondViewTest : public testing::Test {
     session.lanes.show(faulty);
     session.mismatches.stop_at_mismatch = false;
     session.playback.goTo(12);
-    settled(session);
+    waitUntilIdle(session);
   }
 
   std::vector<Pair> rightPairs(const Snapshot& snapshot) {
@@ -77,9 +77,9 @@ class SecondViewTest : public testing::Test {
 };
 
 TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
-  EXPECT_EQ(settled(session).second, nullptr);
+  EXPECT_EQ(waitUntilIdle(session).second, nullptr);
   session.showSecond(true);
-  const RunProgress seen = settled(session);
+  const RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->lane, sap);
   EXPECT_EQ(seen.snapshot->lane, faulty);
@@ -93,18 +93,18 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
 
   // It follows the first one.
   session.playback.goTo(15);
-  EXPECT_EQ(settled(session).second->frame, 15U);
+  EXPECT_EQ(waitUntilIdle(session).second->frame, 15U);
   session.lanes.remove(sap);
-  EXPECT_EQ(settled(session).second->lane, 0);
+  EXPECT_EQ(waitUntilIdle(session).second->lane, 0);
   session.showSecond(false);
-  const RunProgress alone = settled(session);
+  const RunProgress alone = waitUntilIdle(session);
   EXPECT_EQ(alone.second, nullptr);
   EXPECT_EQ(alone.comparison, nullptr);
 }
 
 TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
   session.second = SecondViewRequest{.footage = nullptr, .frame = 5, .lane = sap};
-  RunProgress seen = settled(session);
+  RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->frame, 5U);
   EXPECT_EQ(seen.second->lane, sap);
@@ -118,14 +118,14 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
 
   // Later than the first view's: it is simulated as far as that.
   session.second->frame = 18;
-  seen = settled(session);
+  seen = waitUntilIdle(session);
   EXPECT_EQ(seen.second->frame, 18U);
   EXPECT_EQ(seen.second->lane, sap);
   EXPECT_EQ(seen.snapshot->frame, 12U);
   // Back again, by a fresh instance; and where both are at the same frame.
   for (const std::uint32_t frame : {3U, 12U, 0U, 99U}) {
     session.second->frame = frame;
-    seen = settled(session);
+    seen = waitUntilIdle(session);
     EXPECT_EQ(seen.second->frame, std::min(frame, 20U));
     EXPECT_EQ(seen.second->pairs.size(), rightPairs(*seen.second).size());
   }
@@ -135,7 +135,7 @@ TEST_F(SecondViewTest, AnotherRecording) {
   const std::filesystem::path other = vanishingBodies(directory, 40);
   session.lanes.show(sap);  // it copes with bodies that vanish
   session.showBeside(other);
-  RunProgress seen = settled(session);
+  RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->footage->title, other.filename());
@@ -147,7 +147,7 @@ TEST_F(SecondViewTest, AnotherRecording) {
   // It stays when something else is opened beside it.
   session.draft.simulate();
   session.playback.goTo(2);
-  seen = settled(session);
+  seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->frame, 2U);
   EXPECT_EQ(seen.second->present, 38U);
@@ -162,7 +162,7 @@ TEST_F(SecondViewTest, WhatCannotBeOpenedSaysWhy) {
   const std::filesystem::path other = vanishingBodies(directory, 40);
   session.showBeside(other);
   std::filesystem::remove(other);
-  const RunProgress seen = settled(session);
+  const RunProgress seen = waitUntilIdle(session);
   EXPECT_EQ(seen.second, nullptr);
   EXPECT_THAT(seen.second_failure, HasSubstr("vanishing.broadmark"));
   EXPECT_TRUE(seen.snapshot);

@@ -21,13 +21,13 @@ class SessionTest : public testing::Test {
     setParameters(session.draft.scene(), {{"objects", "60"}, {"frames", "40"}, {"density", "0.3"}});
   }
 
-  RunProgress settle() { return settled(session); }
+  RunProgress waitUntilIdle() { return tests::waitUntilIdle(session); }
 
   /// Lets pictures pass until the playback ends, or `most` have.
   void playOn(int most = 2000) {
     for (int picture = 0; picture < most && session.playback.playing(); ++picture) {
       session.commit();
-      session.runs.settle(kForever);
+      session.runs.waitUntilIdle(kForever);
       session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
     }
   }
@@ -38,13 +38,13 @@ class SessionTest : public testing::Test {
 
 TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
   session.draft.simulate();
-  RunProgress seen = settle();
+  RunProgress seen = waitUntilIdle();
   ASSERT_TRUE(seen.snapshot);
   EXPECT_EQ(seen.snapshot->frame, 0U);
   EXPECT_EQ(seen.snapshot->boxes->size(), 60U);
   EXPECT_EQ(seen.known_frames, 0U);
   session.playback.seek(7);
-  seen = settle();
+  seen = waitUntilIdle();
   EXPECT_EQ(seen.snapshot->frame, 7U);
   EXPECT_EQ(seen.known_frames, 7U);
   EXPECT_THAT(seen.snapshot->pairs,
@@ -57,7 +57,7 @@ TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
     if (!algorithm.traits.on_device) session.lanes.add(algorithm.id);
   }
   session.playback.seek(5);
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.lanes.size(), session.lanes.list.size());
   for (const LaneReport& lane : seen.lanes) {
     EXPECT_EQ(lane.status, Status::ok) << lane.spec.run.algorithm.id << ": " << lane.reason;
@@ -67,7 +67,7 @@ TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
 
 TEST_F(SessionTest, PlaysToTheEndAndLoops) {
   session.draft.simulate();
-  settle();
+  waitUntilIdle();
   session.play(true);
   playOn();
   EXPECT_EQ(session.playback.frame(), 40U);
@@ -86,7 +86,7 @@ TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
   const int faulty = session.lanes.add("faulty").number;
   session.lanes.add("bf");
   session.playback.seek(300);
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   ASSERT_TRUE(seen.stop) << "the fault did not show";
   EXPECT_EQ(seen.stop->lane, faulty);
   EXPECT_EQ(session.playback.frame(), seen.stop->frame);
@@ -97,7 +97,7 @@ TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
   EXPECT_EQ(seen.lanes[1].frame, seen.stop->frame);
   EXPECT_EQ(session.notices.wanted_panels, std::vector<std::string>{"Mismatches"});
   session.playback.step(1);
-  const RunProgress later = settle();
+  const RunProgress later = waitUntilIdle();
   EXPECT_GT(session.playback.frame(), seen.stop->frame);
   EXPECT_EQ(later.snapshot->frame, session.playback.frame());
 }
@@ -109,7 +109,7 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
   session.draft.simulate();
   session.lanes.add("faulty");
   session.playback.seek(300);
-  const RunProgress unchecked = settle();
+  const RunProgress unchecked = waitUntilIdle();
   EXPECT_FALSE(unchecked.stop);
   EXPECT_EQ(session.playback.frame(), 300U);
   ASSERT_EQ(unchecked.lanes.size(), 1U);
@@ -120,7 +120,7 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
   session.mismatches.check = true;
   session.draft.simulate();
   session.playback.seek(300);
-  const RunProgress checked = settle();
+  const RunProgress checked = waitUntilIdle();
   ASSERT_TRUE(checked.stop) << "the fault did not show";
   EXPECT_EQ(session.playback.frame(), checked.stop->frame);
   EXPECT_LT(checked.stop->frame, 300U);
@@ -130,15 +130,15 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
 TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
   session.draft.simulate();
   session.playback.seek(4);
-  const RunProgress live = settle();
+  const RunProgress live = waitUntilIdle();
   session.saveRecording(directory / "some.aabbs");
-  settle();
+  waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   session.open(directory / "some.aabbs");
   session.playback.seek(4);
-  settle();  // now its length is known
+  waitUntilIdle();  // now its length is known
   session.playback.seek(4);
-  const RunProgress saved = settle();
+  const RunProgress saved = waitUntilIdle();
   EXPECT_EQ(saved.scene.frames, 4U);
   ASSERT_EQ(saved.snapshot->frame, 4U);
   EXPECT_EQ(*saved.snapshot->boxes, *live.snapshot->boxes);
@@ -146,7 +146,7 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
 
 TEST_F(SessionTest, ABadFileIsAnErrorAndChangesNothing) {
   session.draft.simulate();
-  settle();
+  waitUntilIdle();
   const auto before = session.playback.footage();
   session.open(directory / "missing.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
@@ -160,22 +160,22 @@ TEST_F(SessionTest, AFileOfSceneParametersBecomesTheDraft) {
   session.open(directory / "scene.json");
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(parameterValues(session.draft.scene()).at("objects"), "60");
-  EXPECT_EQ(settle().scene.objects, 60U);
+  EXPECT_EQ(waitUntilIdle().scene.objects, 60U);
 }
 
 TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
   session.draft.simulate();
   session.playback.seek(4);
-  settle();
+  waitUntilIdle();
   session.saveRecording(directory / "some.aabbs");
-  settle();
+  waitUntilIdle();
   writeTextFile(
       directory / "settings.json",
       R"({"m_inputScene": "some.aabbs", "m_outputLog": "log.json", "m_algorithm": "SAP"})");
   session.lanes.add("bf");
   session.open(directory / "settings.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.scene.frames, 4U);
   ASSERT_EQ(seen.lanes.size(), 1U);
   EXPECT_EQ(seen.lanes[0].spec.run.algorithm.id, "sap");
@@ -188,7 +188,7 @@ TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
   plan.entries[0].cases = {Case{.algorithm = sap}};
   session.open(std::move(plan));
   session.playback.seek(2);
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.scene.name, "FreeFall");
   ASSERT_EQ(seen.lanes.size(), 1U);
   EXPECT_EQ(seen.lanes[0].frame, 2U);
@@ -203,7 +203,7 @@ TEST_F(SessionTest, TwoThatShareOneStateAreRightSideBySide) {
   session.lanes.add("dbvt-f");
   session.lanes.changed();
   session.playback.seek(40);
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   ASSERT_EQ(seen.lanes.size(), 3U);
   for (const LaneReport& lane : seen.lanes) {
     EXPECT_EQ(lane.status, Status::ok) << lane.reason;
@@ -220,7 +220,7 @@ TEST_F(SessionTest, ALaneThatCannotRunTellsWhyAndLeavesTheOthersAlone) {
   session.lanes.add(Case{.algorithm = small});
   session.lanes.add("sap");
   session.playback.seek(3);
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.lanes[0].status, Status::unsupported);
   EXPECT_TRUE(seen.lanes[0].ended);
   EXPECT_THAT(seen.lanes[0].reason, testing::HasSubstr("10"));
@@ -231,11 +231,11 @@ TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
   session.draft.simulate();
   session.lanes.add("grid-bf");
   session.playback.seek(3);
-  settle();
+  waitUntilIdle();
   LaneEdit& lane = session.lanes.list.front();
   setParameters(*lane.parameters, {{"objects_per_cell", "3"}});
   session.lanes.changed();
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.lanes[0].spec.run.parameters.at("objects_per_cell"), "3");
   EXPECT_EQ(seen.lanes[0].frame, 3U);
 }
@@ -243,9 +243,9 @@ TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
 TEST_F(SessionTest, TracksFollowBodiesBackwards) {
   session.draft.simulate();
   session.playback.seek(9);
-  settle();
+  waitUntilIdle();
   session.selection.select({5, 2});
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   ASSERT_EQ(seen.snapshot->tracks.size(), 2U);
   EXPECT_EQ(seen.snapshot->tracks[0].body, 2U);
   EXPECT_EQ(seen.snapshot->tracks[0].boxes.size(), 10U);
@@ -257,7 +257,7 @@ TEST_F(SessionTest, TheTableOfFramesHasALinePerLaneAndFrame) {
   session.lanes.add("sap");
   session.lanes.add("bf");
   session.playback.seek(3);
-  const std::string table = formatFrameTable(session.playback.scene(), settle().lanes);
+  const std::string table = formatFrameTable(session.playback.scene(), waitUntilIdle().lanes);
   EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * 3);
   EXPECT_THAT(table, testing::HasSubstr(",sap,SAP,scalar,1,,1,3,"));
   EXPECT_THAT(table,
@@ -270,9 +270,9 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
   };
   session.open(vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
   session.playback.seek(10);
-  settle();
+  waitUntilIdle();
   session.playback.seek(10);
-  RunProgress seen = settle();
+  RunProgress seen = waitUntilIdle();
   ASSERT_TRUE(seen.snapshot) << seen.failure;
   ASSERT_EQ(seen.snapshot->frame, 10U);
   EXPECT_EQ(seen.snapshot->present, 50U);
@@ -284,7 +284,7 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
   EXPECT_TRUE(std::isnan(seen.population.at(5)));
   session.lanes.add("kd");
   session.lanes.add("sap");
-  seen = settle();
+  seen = waitUntilIdle();
   for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.status, Status::ok) << lane.reason;
   for (std::uint32_t frame = 1; frame <= 10; ++frame) {
     EXPECT_EQ(seen.population.at(frame), 60 - frame);
@@ -294,7 +294,7 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
 TEST_F(SessionTest, WithoutChangesThereIsNoPopulation) {
   session.draft.simulate();
   session.playback.seek(3);
-  EXPECT_EQ(settle().population.size(), 0U);
+  EXPECT_EQ(waitUntilIdle().population.size(), 0U);
 }
 
 TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
@@ -310,9 +310,9 @@ TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
     session.runs.look([&](const RunProgress& progress) { session.advance(progress, 0.01); });
   }
   session.playback.seek(11);
-  settle();
+  waitUntilIdle();
   session.playback.seek(11);
-  const RunProgress seen = settle();
+  const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.snapshot->frame, 11U);
   EXPECT_EQ(seen.lanes.size(), session.lanes.list.size());
 }

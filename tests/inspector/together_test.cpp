@@ -75,7 +75,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   session.lanes.changed();
   session.mismatches.stop_at_mismatch = false;
   session.playback.seek(10);
-  const RunProgress seen = settled(session);
+  const RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.snapshot->difference.isMismatch());
 
   startBake(session.jobs.get<BackgroundBake>(), bulletScene(), directory / "together.aabbs");
@@ -83,7 +83,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   RunProgress last;
   for (int round = 0; round < 50; ++round) {
     session.playback.seek(round % 2 == 0 ? 30 : 4);
-    last = settled(session);
+    last = waitUntilIdle(session);
     if (round > 0 && !session.jobs.get<BackgroundBake>().running() &&
         !session.jobs.get<CaseExport>().running())
       break;

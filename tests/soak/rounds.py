@@ -70,15 +70,15 @@ BEGIN, END = "begun", "ended"
 REFERENCE_WORK = f"""
 resize 1280x720
 open reference.broadmark
-wait settled
+wait idle
 key Home
 click Algorithms/Add…
 click Algorithms/add/sap
-wait settled
+wait idle
 write frame {BEGIN}
 wait 40
 key End
-wait settled
+wait idle
 write frame {END}
 expect lane.sap.status = ok
 click Algorithms/sap/Remove
@@ -123,12 +123,12 @@ class Rounds:
 
     def _open(self) -> str:
         name = self._random.choice(list(RECORDINGS))
-        return f"open {name}\nwait settled\nexpect title = {name}\n" + self._seek() + self._play()
+        return f"open {name}\nwait idle\nexpect title = {name}\n" + self._seek() + self._play()
 
     def _seek(self) -> str:
         keys = self._random.choices(["Home", "End", "Left", "Right"], k=self._number(2, 6))
         jumps = "".join(f"key {key}\n" for key in keys)
-        return jumps + "wait settled\nclick Playback/frame\nwait settled\n"
+        return jumps + "wait idle\nclick Playback/frame\nwait idle\n"
 
     def _play(self) -> str:
         return f"""
@@ -138,20 +138,20 @@ expect playing = yes
 wait {self._number(10, 60)}
 click Playback/Play
 expect playing = no
-wait settled
+wait idle
 """
 
     def _simulate(self) -> str:
         # The form of a new simulation is collapsed while a recording is open.
         return f"""
 open reference.broadmark
-wait settled
+wait idle
 click Scene/draft
 choose Scene/scene {self._random.choice(SCENES)}
 enter Scene/objects {self._number(20, 300)}
 enter Scene/frames {self._number(5, 40)}
 click Scene/Simulate
-wait settled
+wait idle
 expect error = ""
 {self._seek()}
 """
@@ -166,9 +166,9 @@ key Ctrl+S
 expect dialog = yes
 enter File/name {name}
 {replace}expect dialog = no
-wait settled
+wait idle
 open {name}
-wait settled
+wait idle
 expect title = {name}
 """
 
@@ -179,8 +179,8 @@ expect title = {name}
         expectations = "".join(f"expect lane.{id_}.status = ok\n" for id_ in ids)
         return f"""
 open changing.broadmark
-wait settled
-{add}wait settled
+wait idle
+{add}wait idle
 {self._seek()}
 {expectations}panel Results
 wait 3
@@ -194,14 +194,14 @@ wait 5
         """An algorithm crashes its worker process."""
         return f"""
 open reference.broadmark
-wait settled
+wait idle
 key Home
 click Algorithms/Add…
 click Algorithms/add/unruly
 choose Algorithms/unruly/deed crash
 enter Algorithms/unruly/frame {self._number(1, 19)}
 key End
-wait settled
+wait idle
 expect lane.unruly.status = error
 click Algorithms/unruly/Remove
 expect error = ""
@@ -235,7 +235,7 @@ screenshot picture.png
         undo = "key Ctrl+Z\n" + "key Ctrl+Z\nkey Ctrl+Shift+Z\n" * self._number(1, 3)
         return f"""
 click Author/New
-wait settled
+wait idle
 expect author.bodies = 0
 choose Author/Brush/brush lattice
 enter Author/Brush/count_x {self._number(1, 5)}
@@ -250,12 +250,12 @@ click Author/Selection/Scale
 enter "Author/Selection/velocity y" {self._number(-3, 3)}
 enter "Author/Selection/by x" 20
 click Author/Selection/Duplicate
-{undo}wait settled
+{undo}wait idle
 click Author/Simulate
-wait settled
+wait idle
 click "Author/From this frame"
 click Unsaved/Discard
-wait settled
+wait idle
 expect author.modified = yes
 click Author/New
 click Unsaved/Discard
@@ -270,14 +270,14 @@ expect author.modified = no
         self._saved.add(name)
         return f"""
 open many.broadmark
-wait settled
+wait idle
 key Home
 click Algorithms/Add…
 click Algorithms/add/faulty
 enter Algorithms/faulty/fat_margin 0.5
-wait settled
+wait idle
 click "Mismatches/Next mismatch"
-wait settled
+wait idle
 expect mismatch_pairs > 0
 click "Mismatches/Export case…"
 enter File/name {name}

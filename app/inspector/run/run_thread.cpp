@@ -57,12 +57,12 @@ void RunThread::look(const std::function<void(const RunProgress&)>& at) {
   at(progress_);
 }
 
-bool RunThread::settled() {
+bool RunThread::isIdle() {
   const std::lock_guard lock(mutex_);
   return idle_ && taken_ == wishes_;
 }
 
-bool RunThread::settle(std::chrono::milliseconds patience) {
+bool RunThread::waitUntilIdle(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
   return changed_.wait_for(lock, patience, [this] { return idle_ && taken_ == wishes_; });
 }

@@ -104,10 +104,10 @@ class RunThread {
   void wish(ViewRequest wish);
   /// Calls `at` with the progress, which does not change meanwhile.
   void look(const std::function<void(const RunProgress&)>& at);
-  /// Whether everything wished for has been done (or has failed).
-  [[nodiscard]] bool settled();
-  /// Waits for that. Returns whether it came in time.
-  bool settle(std::chrono::milliseconds patience);
+  /// Whether everything requested has been done (or has failed).
+  [[nodiscard]] bool isIdle();
+  /// Waits until isIdle(); returns false after `patience`.
+  bool waitUntilIdle(std::chrono::milliseconds patience);
 
   DrawGate& gate() { return gate_; }
 

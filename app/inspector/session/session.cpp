@@ -44,7 +44,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   playback.advance(progress, seconds);
 }
 
-bool Session::busy() { return playback.playing() || !runs.settled() || jobs.running(); }
+bool Session::busy() { return playback.playing() || !runs.isIdle() || jobs.running(); }
 
 ViewRequest Session::wish() const {
   ViewRequest wish{.footage = playback.footage(),
