@@ -1,18 +1,18 @@
-// Bullet's incremental sweep and prune (bt32BitAxisSweep3): on each axis a sorted array of interval
-// ends; a body that moves shifts its ends by insertion, and each swap of a lower with an upper end
-// may begin or end an overlap, kept in a hash table. O(n + s + k) a frame, s the number of swaps:
-// little when bodies move little, O(n²) when all move far. O(n + k) space.
+// Bullet's incremental sweep and prune (bt32BitAxisSweep3): a sorted array of endpoints per axis.
+// The endpoints of a moved body are re-sorted by insertion; each swap of a lower with an upper
+// endpoint may begin or end an overlap, stored in a hash table. O(n + s + k) a frame, s the number
+// of swaps: few for small moves, O(n²) if all bodies move far. O(n + k) space.
 //
-// Two things are done differently here:
-// - Positions. Bullet's are 31-bit integers spread evenly over a world given beforehand; beyond it
-//   all bodies have the same position. Ours are the floats' own bits without the last one, which
-//   sort as the floats do, so there is no world to leave. The missing bit and the integers' strict
-//   order add pairs; a test of the boxes takes them out, so the answer is exact.
-// - The beginning. Bullet inserts bodies one by one, O(n²) swaps; here all are sorted at once and
-//   swept once along the best axis.
+// Two differences from Bullet:
+// - Positions. Bullet's are 31-bit integers that divide a given world evenly; beyond it all bodies
+// have the same position. Here they are the floats' own bits without the last one, which sort as
+// the floats do, so no world bounds are needed. The missing bit and the integers' strict order add
+// pairs; a test of the boxes removes them, so the answer is exact.
+// - Initialisation. Bullet inserts bodies one by one, O(n²) swaps; here all are sorted at once and
+// swept once along the best axis.
 //
-// Events need no hash table: a pair that begins or ends is one that Bullet wants to add or remove,
-// or two ends have met or parted within the missing bit. The boxes before and now decide.
+// Events need no hash table: a pair that begins or ends is added or removed by Bullet, or two
+// endpoints have become equal or unequal within the missing bit. The old and new boxes decide.
 //
 // Papers: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", PhD thesis, Cornell,
 // 1992; P. Terdiman, "Sweep-and-prune", 2007. Library: Bullet 3, btAxisSweep3.
@@ -34,17 +34,17 @@
 namespace broadmark::axis_sweep {
 namespace {
 
-/// Handles are 31-bit integers, one is Bullet's own, and their number must be below the largest.
+/// Handles are 31-bit integers; Bullet uses one itself, and their number must be below the largest.
 constexpr std::uint64_t kMaxObjects = 0x7FFF'FFFD;
 
-/// Where an interval ends. The lowest bit tells upper ends from lower ones (as in Bullet), so that
-/// touching intervals overlap. -0 becomes +0: they are the same place.
+/// The position of an endpoint. The lowest bit distinguishes upper from lower endpoints (as in
+/// Bullet), so that touching intervals overlap. -0 becomes +0: they are equal.
 unsigned position(float value, bool is_max) {
   return (sortKey(value + 0.0F) & ~1U) | static_cast<unsigned>(is_max);
 }
 
-/// Where on every axis the box of a body that is absent is kept: above all floats, and each body
-/// for itself, as far as there are positions.
+/// The position on every axis of an absent body: above all floats, and unique per body as far as
+/// there are positions.
 unsigned absentPosition(std::uint32_t body, bool is_max) {
   constexpr unsigned kAboveInfinity = 0xFF80'0002;
   constexpr unsigned kPlaces = 0x003F'0000;
@@ -56,11 +56,11 @@ unsigned position(const Aabb& box, std::uint32_t body, int axis, bool is_max) {
   return position((is_max ? box.max : box.min)[axis], is_max);
 }
 
-/// Bullet's sweep with our positions and our beginning. The handle of a body is its number + 1;
+/// Bullet's sweep with different positions and initialisation. The handle of a body is its id + 1;
 /// handle 0 is Bullet's sentinel at both ends of each axis.
 class Sweep final : public bt32BitAxisSweep3 {
  public:
-  /// Forms no pairs yet. They go into `pairs`, or, if that is null, into Bullet's hash table.
+  /// Finds no pairs yet. They go into `pairs`, or, if that is null, into Bullet's hash table.
   Sweep(std::span<const Aabb> boxes, btOverlappingPairCache* pairs)
       : bt32BitAxisSweep3({0, 0, 0}, {1, 1, 1}, static_cast<unsigned>(boxes.size()), pairs,
                           /*disableRaycastAccelerator=*/true) {
@@ -75,7 +75,7 @@ class Sweep final : public bt32BitAxisSweep3 {
     for (int axis = 0; axis < 3; ++axis) placeEdges(boxes, axis);
   }
 
-  /// Brings one body up to date.
+  /// Updates one body.
   void move(std::uint32_t body, const Aabb& box) {
     Handle& handle = *getHandle(body + 1);
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +87,7 @@ class Sweep final : public bt32BitAxisSweep3 {
       const unsigned max = position(box, body, axis, true);
       const unsigned min_before = std::exchange(m_pEdges[axis][min_edge].m_pos, min);
       const unsigned max_before = std::exchange(m_pEdges[axis][max_edge].m_pos, max);
-      // Growth before shrinkage: an end never passes the body's own other end.
+      // Growth before shrinkage: an endpoint never passes the body's own other endpoint.
       if (min < min_before) sortMinDown(axis, min_edge, nullptr, true);
       if (max > max_before) sortMaxUp(axis, max_edge, nullptr, true);
       if (min > min_before) sortMinUp(axis, min_edge, nullptr, true);
@@ -96,8 +96,8 @@ class Sweep final : public bt32BitAxisSweep3 {
     }
   }
 
-  /// Calls visit(other) for each body that has an end at the position of this one's start, or a
-  /// start at that of its end.
+  /// Calls visit(other) for each body with an upper endpoint at the position of this one's lower
+  /// endpoint, or vice versa.
   template <class Visit>
   void forEachTouching(std::uint32_t body, int axis, bool is_max, Visit visit) const {
     const Handle& handle = *getHandle(body + 1);
@@ -115,7 +115,7 @@ class Sweep final : public bt32BitAxisSweep3 {
     for (unsigned e = own; meets(e + 1); ++e) show(e + 1);
   }
 
-  /// Sweeps once: two intervals meet where the one that begins later begins.
+  /// A single sweep: two intervals overlap if one contains the start of the other.
   void findFirstPairs() {
     const int axis = bestAxis();
     for (unsigned i = 1; i <= m_numHandles; ++i) {
@@ -137,7 +137,7 @@ class Sweep final : public bt32BitAxisSweep3 {
   /// Swaps in all moves so far.
   [[nodiscard]] std::uint64_t swaps() const { return swaps_; }
 
-  /// The axis along which the fewest intervals meet.
+  /// The axis with the fewest overlapping intervals.
   [[nodiscard]] int bestAxis() const {
     const std::array<std::uint64_t, 3> lengths = {length(0), length(1), length(2)};
     return static_cast<int>(std::ranges::min_element(lengths) - lengths.begin());
@@ -182,7 +182,7 @@ class Sweep final : public bt32BitAxisSweep3 {
     }
   }
 
-  /// Summed over the bodies: the edges between their own two.
+  /// The number of edges between the two edges of a body, summed over the bodies.
   [[nodiscard]] std::uint64_t length(int axis) const {
     std::uint64_t sum = 0;
     for (unsigned i = 1; i <= m_numHandles; ++i) {
@@ -223,7 +223,7 @@ class AxisSweep final : public BulletBroadPhase {
     if (reportsEvents()) addTouching();
   }
 
-  /// Each axis of the world, the one along which the fewest bodies meet as the chosen one.
+  /// Each axis of the world; the chosen one is the axis with the fewest overlaps.
   void drawStructure(DebugDraw& draw) const override {
     for (int axis = 0; axis < 3; ++axis) {
       std::array<float, 3> from = {world_.min[0], world_.min[1], world_.min[2]};
@@ -243,8 +243,8 @@ class AxisSweep final : public BulletBroadPhase {
   [[nodiscard]] std::string validate() const override { return sweep_->validate(boxes()); }
 
  private:
-  /// Adds the bodies that those which moved touch now, as far as positions tell. Only where they
-  /// moved: on another axis nothing has come about.
+  /// Adds the bodies that moved bodies now touch according to the positions. Only on axes of
+  /// motion: overlaps on other axes are unchanged.
   void addTouching() {
     for (const std::uint32_t body : moved()) {
       const auto add = [&](std::uint32_t other) {
@@ -285,12 +285,12 @@ class AxisSweep final : public BulletBroadPhase {
   }
 
   Aabb world_;
-  // Of events only.
-  std::vector<Aabb> before_;  ///< in the frame before
-  Changes changes_;           ///< pairs that may have begun or ended, on either list
+  // For events only.
+  std::vector<Aabb> before_;  ///< in the previous frame
+  Changes changes_;           ///< candidate events, by either list
 
   std::unique_ptr<Sweep> sweep_;
-  std::uint64_t swaps_before_ = 0;  ///< this frame's
+  std::uint64_t swaps_before_ = 0;  ///< swaps of this frame
 };
 
 }  // namespace

@@ -1,26 +1,25 @@
-// Boost's R-tree: nodes of up to 8 children, each with the box around it; each body's box is
-// looked up in it. The packed variant builds the tree anew every frame, all boxes at once; the
-// incremental one takes the bodies that moved out of it and puts them in again. O(n log n + k)
-// time, for m bodies that move O(m log n) to update the tree, if few boxes on a node overlap. O(n +
-// k) space.
+// Boost's R-tree: nodes of up to 8 children, each with its bounding box; one query per body. The
+// packed variant rebuilds the tree every frame from all boxes at once; the incremental one removes
+// and reinserts moved bodies. O(n log n + k) time, and O(m log n) to update the tree for m moved
+// bodies, if few boxes of a node overlap. O(n + k) space.
 //
-// The manual ("R-tree", "Introduction" and "Creation and Modification") advises the packing
-// algorithm, by the constructor that takes a range, where all values are known: it builds
-// faster and its trees answer faster; a value that changes is to be removed and inserted. Of the
-// three balancing algorithms "Performance" has the quadratic one between the linear one, quickest
-// to insert, and the R*-tree, quickest to answer.
+// The manual ("R-tree", "Introduction" and "Creation and Modification") recommends the packing
+// algorithm, by the range constructor, if all values are known: both construction and queries are
+// faster; a changed value must be removed and inserted. Of the three balancing algorithms in
+// "Performance", the quadratic one is between the linear one, with the fastest insertion, and the
+// R*-tree, with the fastest queries.
 //
-// Bodies are looked up in the order in which the tree has them, so that one finds in the cache what
-// the one before has read. Each pair is found from both sides, and kept from one. Bounds are only
-// compared, as floats: the answer is exact.
+// Queries are in the order of the tree, so that successive queries read cached nodes. Each pair is
+// found from both sides, and reported from one. Bounds are only compared, as floats: the answer is
+// exact.
 //
-// Nothing is drawn: the library does not show its nodes.
+// No drawing: the library does not expose its nodes.
 //
 // Papers: A. Guttman, "R-Trees: A Dynamic Index Structure for Spatial Searching", SIGMOD 1984;
 // S. Leutenegger et al., "STR: A Simple and Efficient Algorithm for R-Tree Packing", ICDE 1997.
 // Library: Boost.Geometry, "Spatial Indexes".
 
-#define BOOST_ALLOW_DEPRECATED_HEADERS  // Boost's own: no notes on them
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // suppresses Boost's own notes
 #include <boost/geometry/algorithms/covered_by.hpp>
 #include <boost/geometry/core/cs.hpp>
 #include <boost/geometry/geometries/box.hpp>
@@ -45,7 +44,7 @@ namespace index = boost::geometry::index;
 using Point = boost::geometry::model::point<float, 3, boost::geometry::cs::cartesian>;
 using Box = boost::geometry::model::box<Point>;
 using Value = std::pair<Box, std::uint32_t>;
-/// A body has one value.
+/// Values are equal if their bodies are.
 struct SameBody {
   bool operator()(const Value& a, const Value& b) const { return a.second == b.second; }
 };
@@ -73,7 +72,7 @@ class RTree final : public MovedBoxes {
   }
 
  private:
-  /// Makes the tree of all boxes.
+  /// Builds the tree from all boxes.
   void pack() {
     values_.clear();
     for (const Aabb& box : boxes()) {

@@ -1,8 +1,8 @@
 // Brute force: every box against every other. O(n²) tests, no structure: the definition of the
-// answer, and what every other algorithm has to beat.
+// answer, and the baseline for all other algorithms.
 //
-// The triangle of pairs i < j is cut into tiles of columns that fit the first-level cache; all rows
-// pass over one tile before the next is begun. Workers get bands of rows with equally many pairs.
+// The triangle of pairs i < j is divided into tiles of columns that fit in L1; all rows are tested
+// against one tile before the next. Workers get bands of rows with equally many pairs.
 //
 // Paper: Y. R. Serpa and M. A. F. Rodrigues, "Broadmark: A Testing Framework for Broad-Phase
 // Collision Detection Algorithms", Computer Graphics Forum, 2019.
@@ -21,7 +21,7 @@ namespace {
 /// Columns of a tile: 24 KiB of boxes.
 constexpr std::size_t kTile = 1024;
 
-/// The rows of one worker. Rows [0, r) hold n·r − r²/2 pairs or so: solved for a share of n²/2.
+/// The rows of one worker. Rows [0, r) have about n·r − r²/2 pairs: solved for a share of n²/2.
 Range rowsOf(int worker, int workers, std::size_t count) {
   const auto first_row = [&](int k) {
     if (k == workers) return count;

@@ -1,5 +1,4 @@
-// What the wrappers of Bullet's broad phases share: Bullet's pairs, or what is new about them, as
-// ours.
+// Shared base of the wrappers of Bullet's broad phases: converts Bullet's pairs or their changes.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -11,8 +10,7 @@
 
 namespace broadmark {
 
-/// Bullet is handed on only the boxes that changed. Body i is the proxy with Bullet's unique id i
-/// + 1.
+/// Passes only changed boxes to Bullet. Body i is the proxy with Bullet's unique id i + 1.
 class BulletBroadPhase : public MovedBoxes {
  public:
   void initialize(const SceneInfo& scene, const Frame& first,
@@ -25,7 +23,7 @@ class BulletBroadPhase : public MovedBoxes {
   [[nodiscard]] PairEvents events() const final { return {{&began_run_, 1}, {&ended_run_, 1}}; }
 
  protected:
-  /// Pairs that Bullet added and removed, some of them several times.
+  /// Pairs added and removed by Bullet, possibly with duplicates.
   struct Changes final : btNullPairCache {
     std::vector<Pair> added;
     std::vector<Pair> removed;
@@ -43,7 +41,7 @@ class BulletBroadPhase : public MovedBoxes {
 
   /// Whether the answer is events; set before initialize().
   [[nodiscard]] bool reportsEvents() const { return reports_events_; }
-  /// Has find(began, ended) put this frame's events, each once, into two empty vectors.
+  /// Calls find(began, ended) to fill two empty vectors with this frame's events, each once.
   template <class Find>
   void findEvents(Find find) {
     began_.clear();
@@ -53,14 +51,14 @@ class BulletBroadPhase : public MovedBoxes {
     ended_run_ = ended_;
   }
 
-  /// Has Bullet form only pairs that are wanted.
+  /// Makes Bullet find wanted pairs only.
   void filterPairs(btOverlappingPairCache& cache) {
     if (!wanted_.filter.wantsAll()) cache.setOverlapFilterCallback(&wanted_);
   }
 
   [[nodiscard]] bool isWanted(Pair pair) const { return wanted_.filter.wanted(pair.a, pair.b); }
 
-  /// Adds those of the library's pairs for which keep(a, b).
+  /// Adds the library's pairs for which keep(a, b).
   template <class Keep>
   void addPairs(btOverlappingPairCache& cache, Keep keep) {
     const btBroadphasePairArray& found = cache.getOverlappingPairArray();

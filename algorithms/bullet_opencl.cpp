@@ -1,21 +1,21 @@
 // Bullet 3's three broad phases on OpenCL: a uniform grid of 128³ wrapping cells (O(n) for bodies
-// of about one size), a linear BVH (O(n log n + k)) and a sweep along one axis (about n^(5/3)).
-// They are the paper's GPU families. Library: Debian's libBullet3OpenCL_clew.
+// of similar size), a linear BVH (O(n log n + k)) and a sweep along one axis (about n^(5/3)). They
+// are the paper's GPU families. Library: Debian's libBullet3OpenCL_clew.
 //
-// Each loses pairs when it is used as it comes; what is done about it here:
+// Each loses pairs by default; the workarounds here:
 // - the grid's cells are as large as its largest small body, and hold any number of bodies; bodies
-//   far larger than most are handed over as large ones, which it tests against all small ones;
-// - pairs of two large bodies are found by none of them: they are tested here, on the host;
-// - the linear BVH's kernel reads past its end unless n = 1 (mod 64): inverted boxes, which meet
-//   nothing, fill up;
-// - a full pair buffer cuts the answer silently: it is doubled and the search done again;
-// - the sweep's sort overflows from 2^19 bodies on: refused;
-// - the radix sort relies on groups of 64 running in lockstep, which a GPU need not do: on anything
-//   but a CPU the right answer on a known scene is asked for first.
+// far larger than most are passed as large ones, which the grid tests against all small ones;
+// - no broad phase finds pairs of two large bodies: they are tested here, on the host;
+// - the linear BVH's kernel reads past its end unless n = 1 (mod 64): padding with inverted boxes,
+// which overlap nothing;
+// - a full pair buffer truncates the answer silently: it is doubled and the search repeated;
+// - the sweep's sort overflows from 2^19 bodies on: unsupported;
+// - the radix sort assumes that groups of 64 run in lockstep, which GPUs do not guarantee: on any
+// device except CPUs a known scene is checked first.
 //
-// The grid's kernels are global variables of the library. Each grid keeps its own and puts them in
-// place before every search and before it is destroyed (opencl/bullet_library.h); the host lets no
-// other call in meanwhile (traits.exclusive). So any number of grids may live at the same time.
+// The grid's kernels are global variables of the library. Each grid stores its own and installs
+// them before every search and before its destruction (opencl/bullet_library.h); the host prevents
+// concurrent calls (traits.exclusive). So any number of grids may coexist.
 //
 // Paper: Y. R. Serpa and M. A. F. Rodrigues, "Broadmark", Computer Graphics Forum, 2019; T. Karras,
 // "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012 (the BVH);
@@ -55,14 +55,14 @@ b3SapAabb toBullet(const Aabb& box, int id) {
   return result;
 }
 
-/// Which bodies a broad phase gets as small and as large ones.
+/// The division of bodies into small and large ones.
 struct Sizes {
   b3AlignedObjectArray<int> small;
   b3AlignedObjectArray<int> large;
-  float cell = 0;  ///< edge of a cell that is larger than any small body
+  float cell = 0;  ///< cell edge, above that of any small body
 };
 
-// What differs between the three. Each: the library's class, its limits, and how it wants bodies.
+// The differences of the three: the library's class, its limits, and its input.
 
 template <class Library>
 struct UsualTraits {
@@ -103,8 +103,8 @@ struct SapTraits : UsualTraits<b3GpuSapBroadphase> {
   }
 };
 
-/// The library's object. It is made once for an Execution: each leaks megabytes and takes a fifth
-/// of a second for its kernels. Nothing in it lasts from one answer to the next.
+/// The library's object. It is made once per ExecutionContext: each leaks megabytes and takes a
+/// fifth of a second for its kernels. It carries no state between answers.
 template <class Traits>
 class SharedLibrary final : public SharedResource {
  public:
@@ -123,7 +123,7 @@ class SharedLibrary final : public SharedResource {
   std::int64_t build_ns_ = 0;
 };
 
-/// Directly on BroadPhase: pairs come from the library as a whole.
+/// Directly on BroadPhase: the library returns all pairs at once.
 template <class Traits>
 class BulletOpenCl final : public BroadPhase {
  public:
@@ -192,7 +192,7 @@ class BulletOpenCl final : public BroadPhase {
     return farthest;
   }
 
-  /// Large are the bodies that would make cells far too large for most, or need too many of them.
+  /// Large bodies would make cells far too large for most bodies, or need too many cells.
   void divideBySize(std::span<const Aabb> boxes) {
     sizes_.small.resize(0);
     sizes_.large.resize(0);
@@ -209,12 +209,12 @@ class BulletOpenCl final : public BroadPhase {
       edge = std::max({edge, reach, longestEdge(boxes[i])});
       farthest = std::max(farthest, distance(boxes[i]));
     }
-    // A body's cell is found by two roundings: a little room keeps neighbours neighbours.
+    // A body's cell results from two roundings: a margin keeps neighbours in adjacent cells.
     constexpr float kRounding = 0x1p-21F;
     sizes_.cell = std::max(edge * 1.001F + farthest * kRounding, 1e-30F);
   }
 
-  /// Four times the median, unless that leaves more than one body in 16 out.
+  /// Four times the median, unless that makes more than one body in 16 large.
   float largestSmallEdge(std::span<const Aabb> boxes) {
     return std::max(4 * quantile(boxes, longestEdge, 8), quantile(boxes, longestEdge, 15));
   }
@@ -234,7 +234,7 @@ class BulletOpenCl final : public BroadPhase {
     for (;;) {
       broad_phase_->calculateOverlappingPairs(max_pairs_);
       if (broad_phase_->getNumOverlap() < max_pairs_) break;
-      opencl::dropBulletError();  // it may have complained of the full buffer
+      opencl::dropBulletError();  // possibly an error about the full buffer
       if (max_pairs_ > std::numeric_limits<int>::max() / 2) {
         throw UnsupportedError("more pairs than the library can count");
       }
@@ -294,13 +294,13 @@ class BulletOpenCl final : public BroadPhase {
     }
   }
 
-  typename Traits::BroadPhase* broad_phase_ = nullptr;  ///< the execution's
+  typename Traits::BroadPhase* broad_phase_ = nullptr;  ///< owned by the execution context
   std::int64_t build_ns_ = 0;
   TransferTimes transfers_;
-  int count_ = 0;      ///< bodies, those that fill up not counted
-  int max_pairs_ = 0;  ///< what the pair buffer is made for
+  int count_ = 0;      ///< bodies without the padding
+  int max_pairs_ = 0;  ///< capacity of the pair buffer
   Sizes sizes_;
-  std::vector<float> ordered_;  ///< room for quantiles
+  std::vector<float> ordered_;  ///< scratch memory for quantiles
   b3AlignedObjectArray<b3SapAabb> host_boxes_;
   b3AlignedObjectArray<b3Int4> host_pairs_;
   PairBuffer pairs_;

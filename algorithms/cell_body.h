@@ -11,9 +11,9 @@ namespace broadmark {
 /// axis, set if the body begins in an earlier cell on that axis.
 ///
 /// Two overlapping bodies may share several cells. On each axis, the body that begins later has a
-/// clear phantom bit in the first shared cell, and both have theirs set in all further ones. So
-/// exactly one shared cell has no phantom bit in common: the home cell, which reports the pair.
-/// This needs neither a hash table nor another look at the boxes.
+/// clear phantom bit in the first shared cell, and both have it set in all further ones. So exactly
+/// one shared cell has no phantom bit in common: the home cell, which reports the pair. This needs
+/// neither a hash table nor another access to the boxes.
 using CellBody = std::uint32_t;
 
 inline constexpr int kPhantomShift = 29;
@@ -25,7 +25,7 @@ constexpr CellBody phantomBits(bool x, bool y, bool z) {
   return (CellBody{x} | CellBody{y} << 1 | CellBody{z} << 2) << kPhantomShift;
 }
 constexpr std::uint32_t bodyId(CellBody body) { return body & kBodyIdMask; }
-/// Whether the cell that holds both is the pair's home cell.
+/// Whether the common cell is the pair's home cell.
 constexpr bool isHomeCellPair(CellBody a, CellBody b) { return (a & b & ~kBodyIdMask) == 0; }
 
 }  // namespace broadmark

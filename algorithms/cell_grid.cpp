@@ -1,5 +1,5 @@
-// Fitting a grid to boxes. The region is taken from quantiles of a sample and not from the bounds:
-// one body that has fallen out of the world would otherwise leave all others in one cell.
+// Fits a grid to boxes. The region is based on quantiles of a sample and not on the bounds: a
+// single body outside the world would otherwise leave all others in one cell.
 
 #include "cell_grid.h"
 
@@ -13,10 +13,10 @@ namespace broadmark {
 namespace {
 
 constexpr std::size_t kSample = 256;
-/// Cells on one axis: far fewer than the integers that a float can tell apart.
+/// Cells per axis: far below the precision of a float.
 constexpr double kMaxCells = 1 << 20;
 
-/// Three quarters of the boxes are no longer.
+/// The upper quartile of the edges.
 double usualEdge(std::span<const Aabb> sample, int axis) {
   std::array<double, kSample> edges;
   const auto end = std::ranges::transform(sample, edges.begin(), [=](const Aabb& box) {
@@ -27,8 +27,8 @@ double usualEdge(std::span<const Aabb> sample, int axis) {
   return *at;
 }
 
-/// The edge of cubic cells, `cells` of them, that fill the extents. An axis shorter than a cell
-/// (or 0) is not cut, and the others share the cells among them.
+/// The edge of cubic cells, `cells` of them, that fill the extents. An axis shorter than a cell (or
+/// 0) is not cut, and the cells are divided among the others.
 double cellSide(std::array<double, 3> extents, double cells) {
   std::ranges::sort(extents, std::ranges::greater());
   double side = extents[0];
@@ -70,17 +70,17 @@ void CellGrid::fit(std::span<const Aabb> boxes, std::size_t cells, bool columns)
   for (int axis = 0; axis < 3; ++axis) {
     const double length = std::max(side, 2 * usualEdge(sample, axis));
     const double count = std::min(std::round(extents[axis] / length), kMaxCells);
-    // Not when there is no extent, either: 0/0.
+    // False, too, for no extent: 0/0.
     if (count >= 2) cut(axis, bulk[axis].low, extents[axis], count);
   }
 }
 
 void CellGrid::cut(int axis, double low, double extent, double count) {
-  constexpr double kMost = std::numeric_limits<float>::max();
+  constexpr double kMaxScale = std::numeric_limits<float>::max();
   counts_[axis] = static_cast<std::int32_t>(count);
   last_[axis] = static_cast<float>(counts_[axis] - 1);
   low_[axis] = static_cast<float>(low);
-  scale_[axis] = extent > 0 ? static_cast<float>(std::min(count / extent, kMost)) : 0;
+  scale_[axis] = extent > 0 ? static_cast<float>(std::min(count / extent, kMaxScale)) : 0;
 }
 
 Aabb CellGrid::cell(std::size_t index, const Aabb& bounds) const {

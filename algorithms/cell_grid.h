@@ -1,5 +1,5 @@
-// A uniform grid of cells over boxes: where they lie, which of them a box touches, and which one of
-// several shared cells answers for a pair.
+// A uniform grid of cells over boxes: its cells, the cells that a box touches, and the home cell of
+// a pair with several shared cells.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace broadmark {
 
-/// A cell by its number on each axis. (The fourth component is padding, 0.)
+/// A cell by its index on each axis. (The fourth component is padding, 0.)
 using CellPosition = std::array<std::int32_t, 4>;
 
 /// The cells that a box touches: first to last on each axis, both inclusive.
@@ -21,7 +21,7 @@ struct CellRange {
   alignas(16) CellPosition first{};
   alignas(16) CellPosition last{};
 
-  /// Exact, and at most the number of cells of the grid.
+  /// Exact; at most the grid's number of cells.
   [[nodiscard]] std::size_t count() const {
     std::size_t cells = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -35,20 +35,20 @@ struct CellRange {
   friend bool operator==(const CellRange&, const CellRange&) = default;
 };
 
-/// Cells of equal size, aligned to the axes. The outermost ones reach to infinity, so every box
-/// touches at least one cell. A higher coordinate never falls into a lower cell. Correctness rests
-/// on that alone: boxes that overlap have a cell in common.
+/// Cells of equal size, aligned to the axes. The outermost ones extend to infinity, so every box
+/// touches at least one cell. A higher coordinate never maps to a lower cell. Correctness rests on
+/// that alone: boxes that overlap share a cell.
 class CellGrid {
  public:
   /// One cell.
   CellGrid() = default;
-  /// Cuts a world on each axis into so many.
+  /// Divides a world into `cells_per_axis` cells on each axis.
   CellGrid(const Aabb& world, std::int32_t cells_per_axis);
 
-  /// Lays about `cells` cells (at least one; at most two and a half times as many, by rounding)
-  /// over the bulk of `boxes`; a few boxes far off don't stretch the grid. `columns`: the cells are
-  /// not cut on the y axis. Cells are about twice as long as the mean box or longer on each axis,
-  /// so that boxes of similar size touch few of them.
+  /// Fits about `cells` cells (at least one; at most two and a half times as many, by rounding) to
+  /// the trimmed range of `boxes`; outliers do not stretch the grid. `columns`: the cells are not
+  /// cut on the y axis. Cells are at least about twice as long as the mean box on each axis, so
+  /// that boxes of similar size touch few of them.
   void fit(std::span<const Aabb> boxes, std::size_t cells, bool columns);
 
   [[nodiscard]] std::size_t size() const {
@@ -80,7 +80,7 @@ class CellGrid {
   /// Calls visit(index, phantom bits) for each cell in `range`: see CellBody.
   template <class Visit>
   void forEachCell(const CellRange& range, Visit visit) const {
-    if (range.first == range.last) {  // most boxes, and quicker than three loops
+    if (range.first == range.last) {  // most boxes, and faster than three loops
       visit(indexOf(range.first[0], range.first[1], range.first[2]), CellBody{0});
       return;
     }
@@ -94,21 +94,20 @@ class CellGrid {
     }
   }
 
-  /// The cell at an index, its outer sides drawn in to `bounds`: for drawing.
+  /// The cell at an index, with its outer sides clipped to `bounds`: for drawing.
   [[nodiscard]] Aabb cell(std::size_t index, const Aabb& bounds) const;
 
  private:
   void cut(int axis, double low, double extent, double count);
-  /// The cells that a box's corner lies in. All axes at once: this is done to each box twice a
-  /// frame.
+  /// The cells of a box's corner. All axes at once: called twice a frame for each box.
   [[nodiscard]] CellPosition cellsOf(const std::array<float, 4>& corner) const {
     const Corner cell = (cornerOf(corner) - cornerOf(low_)) * cornerOf(scale_);
-    // What overflows ends in an outermost cell, and NaN (infinity · 0), the first operand, in 0.
+    // Overflow is clamped to the outermost cells, and NaN (infinity · 0), the first operand, to 0.
     return std::bit_cast<CellPosition>(truncated(smaller(larger(cell, Corner{}), cornerOf(last_))));
   }
 
   alignas(16) std::array<float, 4> low_{};
-  alignas(16) std::array<float, 4> scale_{};  ///< cells per unit of length; 0 where there is one
+  alignas(16) std::array<float, 4> scale_{};  ///< cells per unit of length; 0 for a single cell
   alignas(16) std::array<float, 4> last_{};   ///< counts_ - 1
   CellPosition counts_ = {1, 1, 1, 1};
 };

@@ -1,8 +1,8 @@
-// CGAL's box intersection: a segment tree and a range tree are streamed, level by level, over the
-// boxes in place, and small subproblems are scanned. O(n log³ n + k) time, O(n) space. Beyond the
-// streaming the library's one choice is the cutoff below which it scans.
+// CGAL's box intersection: streams a segment tree and a range tree, level by level, over the boxes
+// in place, and scans small subproblems. O(n log³ n + k) time, O(n) space. Besides streaming, the
+// library's only option is the cutoff for scans.
 //
-// Nothing is drawn: the trees exist only as recursion within the library's call.
+// No drawing: the trees exist only as recursion within the library's call.
 //
 // Paper: A. Zomorodian, H. Edelsbrunner, "Fast Software for Box Intersections", SCG 2000. Library:
 // L. Kettner, A. Meyer, A. Zomorodian, "Intersecting Sequences of dD Iso-oriented Boxes", CGAL User
@@ -31,7 +31,7 @@ class Cgal final : public BoxBroadPhase {
   void updateStructures() override {
     boxes_.clear();
     for (const Aabb& box : boxes()) {
-      // The library takes this for the end of each axis, which lies in none of its segments.
+      // The library uses this as the end of each axis, and no segment contains it.
       if (*std::max_element(box.min.begin(), box.min.begin() + 3) == kEnd) {
         throw UnsupportedError("CGAL loses boxes whose lower bound is the largest float");
       }
@@ -42,7 +42,7 @@ class Cgal final : public BoxBroadPhase {
   }
 
  private:
-  /// The library tells boxes apart by the address of what they stand for.
+  /// The library identifies boxes by the address of their handle.
   using Box = CGAL::Box_intersection_d::Box_with_handle_d<float, 3, const Aabb*>;
   static constexpr float kEnd = std::numeric_limits<float>::max();
 

@@ -302,7 +302,7 @@ class DrawVisitor final : public ColumnVisitor {
                static_cast<std::uint32_t>(sorted.size));
     TestCounts tests(sorted.size);
     tests.addWindows({sorted.ends.data(), sorted.size});
-    tests.tell(draw_, [&](std::size_t i) { return bodyId(sorted.entries[i].body); });
+    tests.report(draw_, [&](std::size_t i) { return bodyId(sorted.entries[i].body); });
   }
 
  private:

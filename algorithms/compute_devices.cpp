@@ -1,4 +1,4 @@
-// Choosing among compute devices; opencl/device_context.cpp finds them.
+// Selection among compute devices; opencl/device_context.cpp enumerates them.
 
 #include "broadmark/compute_devices.h"
 

@@ -1,4 +1,4 @@
-// A corner of a box as one vector, in a notation that GCC and clang have for every processor.
+// A corner of a box as a vector, in a portable notation of GCC and clang.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline WholeCorner cornerOf(const std::array<std::int32_t, 4>& numbers) {
   return std::bit_cast<WholeCorner>(numbers);
 }
 
-/// On each axis the second one where they cannot be compared (NaN).
+/// Per axis, the second operand if they are unordered (NaN).
 template <class AnyCorner>
 AnyCorner smaller(AnyCorner a, AnyCorner b) {
   return a < b ? a : b;
@@ -32,12 +32,12 @@ AnyCorner larger(AnyCorner a, AnyCorner b) {
   return a > b ? a : b;
 }
 #if defined(__SSE2__)
-// GCC 12 makes four instructions of what is one.
+// GCC 12 generates four instructions instead of one.
 inline Corner smaller(Corner a, Corner b) { return _mm_min_ps(a, b); }
 inline Corner larger(Corner a, Corner b) { return _mm_max_ps(a, b); }
 #endif
 
-/// On which axes a condition holds, the result of a comparison: bit i for axis i.
+/// The axes on which a comparison holds: bit i for axis i.
 inline unsigned axesWhere(WholeCorner condition) {
 #if defined(__SSE2__)
   return static_cast<unsigned>(_mm_movemask_ps(std::bit_cast<__m128>(condition))) & 7;
@@ -47,7 +47,7 @@ inline unsigned axesWhere(WholeCorner condition) {
 }
 inline bool isEveryAxis(WholeCorner condition) { return axesWhere(condition) == 7; }
 
-/// Towards 0; all of them must be in the range of an integer.
+/// Truncates; all components must be in the range of an integer.
 inline WholeCorner truncated(Corner corner) { return __builtin_convertvector(corner, WholeCorner); }
 
 }  // namespace broadmark

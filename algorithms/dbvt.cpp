@@ -1,21 +1,21 @@
-// Bullet's dynamic bounding volume trees (btDbvtBroadphase): one tree of the boxes that move, one
-// of those at rest. A leaf that its box has left is taken out and put in again, enlarged by a
-// margin; pairs are kept in a hash table. The forward variant looks up each body's overlaps when it
-// is put in, the deferred one descends both trees against each other once a frame. O(m log n + k) a
-// frame for m bodies that move, if the tree is balanced. O(n + k) space.
+// Bullet's dynamic bounding volume trees (btDbvtBroadphase): one tree of moving boxes, one of boxes
+// at rest. A leaf that its box has left is removed and reinserted, enlarged by a margin; pairs are
+// stored in a hash table. The forward variant queries the trees at each insertion, the deferred one
+// traverses both trees against each other once a frame. O(m log n + k) a frame for m moving bodies,
+// if the tree is balanced. O(n + k) space.
 //
-// The answer is what Bullet's user gets: the pairs of leaves that overlap. A leaf reaches beyond
-// its box by up to twice the margin, when its body has gone from one end of it to the other. When
-// the box shrinks it would reach further: the body is then put in anew (setAabbForceUpdate, which
-// Bullet has for that). By itself Bullet looks through only a tenth of its pairs a frame for stale
-// ones: here all of them are looked through, or they would pile up.
+// The answer is what Bullet's user gets: the pairs of overlapping leaves. A leaf extends beyond its
+// box by up to twice the margin, after its body has moved from one end of it to the other. If the
+// box shrinks it would extend further: the body is then reinserted (setAabbForceUpdate, which
+// Bullet provides for that). By default Bullet checks only a tenth of its pairs a frame for stale
+// ones: here all of them are checked, as they would accumulate.
 //
-// Events are what Bullet's hash table tells as pairs come and go. A frame in which nothing changed
-// does not reach Bullet then.
+// Events come from the callbacks of Bullet's hash table for added and removed pairs. A frame
+// without changes is not passed to Bullet then.
 //
-// Bullet's margin is a global variable. An instance sets it for the length of a call and puts the
-// former value back, and the host lets nobody else use it meanwhile (traits.exclusive): so
-// instances with different margins may live at the same time.
+// Bullet's margin is a global variable. An instance sets it during a call and restores the former
+// value, and the host prevents concurrent use (traits.exclusive): so instances with different
+// margins may coexist.
 //
 // Paper: the trees follow N. Presson's in Bullet; for the idea see G. van den Bergen, "Efficient
 // Collision Detection of Complex Deformable Models using AABB Trees", 1997. Library: Bullet 3.
@@ -48,14 +48,14 @@ Aabb boxOf(const btDbvtVolume& volume) {
   return {{min.x(), min.y(), min.z(), 0}, {max.x(), max.y(), max.z(), 0}};
 }
 
-/// Bullet has one margin for the whole process: it is this one while the object lives. Of all that
-/// is called here only setAabb reads it.
-class MarginInForce {
+/// Sets Bullet's process-wide margin during its lifetime. Of the functions called here only setAabb
+/// reads it.
+class ScopedMargin {
  public:
-  explicit MarginInForce(float margin) : before_(std::exchange(gDbvtMargin, margin)) {}
-  ~MarginInForce() { gDbvtMargin = before_; }
-  MarginInForce(const MarginInForce&) = delete;
-  MarginInForce& operator=(const MarginInForce&) = delete;
+  explicit ScopedMargin(float margin) : before_(std::exchange(gDbvtMargin, margin)) {}
+  ~ScopedMargin() { gDbvtMargin = before_; }
+  ScopedMargin(const ScopedMargin&) = delete;
+  ScopedMargin& operator=(const ScopedMargin&) = delete;
 
  private:
   float before_;
@@ -67,7 +67,7 @@ class Dbvt final : public BulletBroadPhase {
   Dbvt(const Dbvt&) = delete;
   Dbvt& operator=(const Dbvt&) = delete;
   ~Dbvt() override {
-    // destroyProxy would search all pairs for each of them.
+    // destroyProxy would search all pairs for each proxy.
     for (btDbvtProxy* const proxy : proxies_) {
       if (proxy != nullptr) btAlignedFree(proxy);
     }
@@ -78,7 +78,7 @@ class Dbvt final : public BulletBroadPhase {
            &margin_, 0, 1e6});
   }
 
-  /// How far a leaf may reach beyond its box.
+  /// The maximum extent of a leaf beyond its box.
   [[nodiscard]] float margin() const override { return 2 * static_cast<float>(margin_); }
 
   void initialize(const SceneInfo& scene, const Frame& first,
@@ -97,7 +97,7 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   void updateStructures() override {
-    const MarginInForce in_force(static_cast<float>(margin_));
+    const ScopedMargin in_force(static_cast<float>(margin_));
     const unsigned updates_before = tree_.m_updates_done;
     reinsertions_ = 0;
     destroyVanished();
@@ -107,7 +107,7 @@ class Dbvt final : public BulletBroadPhase {
         create(body);
         continue;
       }
-      if (proxies_[body]->stage == Tree::STAGECOUNT) ++reinsertions_;  // out of the tree at rest
+      if (proxies_[body]->stage == Tree::STAGECOUNT) ++reinsertions_;  // from the tree at rest
       move(body);
     }
     reinsertions_ += tree_.m_updates_done - updates_before;
@@ -135,7 +135,7 @@ class Dbvt final : public BulletBroadPhase {
   }
 
  private:
-  /// A pair that went and came again has neither ended nor begun.
+  /// A pair that was removed and added again has neither ended nor begun.
   void gatherEvents() {
     std::ranges::sort(changes_.added);
     std::ranges::sort(changes_.removed);
@@ -165,33 +165,33 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   void create(std::uint32_t body) {
-    tree_.m_gid = static_cast<int>(body);  // the proxy's number is the next one
+    tree_.m_gid = static_cast<int>(body);  // id of the next proxy
     const Aabb& box = boxes()[body];
     proxies_[body] = static_cast<btDbvtProxy*>(
         tree_.createProxy(vectorOf(box.min), vectorOf(box.max), BOX_SHAPE_PROXYTYPE, nullptr,
                           btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter, nullptr));
   }
 
-  /// Puts bodies that never meet into the tree at rest, before there is anybody else.
+  /// Inserts bodies that never collide into the tree at rest, before all others.
   void putToRest(const NonCollidingLayers& layers, std::span<const std::uint32_t> bodies) {
     if (layers.bodyCount() == 0) return;
     const bool deferred = tree_.m_deferedcollide;
-    tree_.m_deferedcollide = true;  // nobody looks for pairs when created,
+    tree_.m_deferedcollide = true;  // no pair search on creation,
     for (const std::uint32_t body : bodies) {
       if (layers.contains(body)) create(body);
     }
-    tree_.m_deferedcollide = false;  // nor here, where all go to rest.
+    tree_.m_deferedcollide = false;  // nor here, where all become at rest
     for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);
     tree_.m_deferedcollide = deferred;
-    // What Bullet would do bit by bit in the next hundred frames, and again whenever a body comes
-    // to rest. (Its optimizeTopDown() fails where boxes have one centre.)
+    // Bullet would otherwise do this incrementally in the next hundred frames, and again whenever a
+    // body comes to rest. (Its optimizeTopDown() fails for boxes with a common centre.)
     btDbvt& at_rest = tree_.m_sets[Tree::FIXED_SET];
     at_rest.optimizeIncremental(at_rest.m_leaves);
     tree_.m_fixedleft = 0;
     tree_.m_fupdates = 0;
   }
 
-  /// For each proxy that it destroys Bullet would go through all pairs: here that is done once.
+  /// Bullet would traverse all pairs for each destroyed proxy: here they are traversed once.
   void destroyVanished() {
     const auto has_vanished = [this](std::uint32_t body) {
       return isEmpty(boxes()[body]) && proxies_[body] != nullptr;
@@ -216,11 +216,11 @@ class Dbvt final : public BulletBroadPhase {
     const btVector3 min = vectorOf(boxes()[body].min);
     const btVector3 max = vectorOf(boxes()[body].max);
     tree_.setAabb(proxies_[body], min, max, nullptr);
-    // A box that shrank, or, far from the origin, a margin that was rounded up.
+    // The box shrank, or, far from the origin, the margin was rounded up.
     if (reachesTooFar(body)) tree_.setAabbForceUpdate(proxies_[body], min, max, nullptr);
   }
 
-  /// Brings Bullet's pairs up to date.
+  /// Updates Bullet's pairs.
   void updatePairs() {
     // Bullet checks for stale pairs from the m_cid-th on, at least as many as are new: so all.
     tree_.m_cid = 0;
@@ -244,7 +244,7 @@ class Dbvt final : public BulletBroadPhase {
   Changes changes_;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
-  std::uint64_t reinsertions_ = 0;     ///< this frame's
+  std::uint64_t reinsertions_ = 0;     ///< of this frame
 };
 
 }  // namespace

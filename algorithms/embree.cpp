@@ -1,22 +1,21 @@
 // Embree's collision of a bounding volume hierarchy with itself (rtcCollide): each frame a
-// hierarchy of the boxes is built, as wide as the processor's vectors, and descended against
-// itself. Two builds: along a Morton curve, quick to build, and by the surface area heuristic,
-// quick to search. O(n log n + k) time, if the boxes are of one size, O(n) space.
+// hierarchy of the boxes is built, as wide as the processor's vectors, and traversed against
+// itself. Two builds: along a Morton curve, with a fast build, and by the surface area heuristic,
+// with a fast search. O(n log n + k) time for boxes of similar size, O(n) space.
 //
-// Each body is a primitive of one user geometry, as Embree's tutorial "collide" has it. For
-// geometry that moves the manual ("Scene Object") advises a dynamic scene of low build quality:
-// that is the Morton build, and its geometry must be of low quality, too. The other build is the
-// default, medium. Both keep scene and geometry from frame to frame and commit them again.
+// Each body is a primitive of one user geometry, as in Embree's tutorial "collide". For moving
+// geometry the manual ("Scene Object") recommends a dynamic scene of low build quality: that is the
+// Morton build, and its geometry must be of low quality, too. The other build is the default,
+// medium. Both retain scene and geometry between frames and commit them again.
 //
-// What is reported are pairs of primitives that may overlap, each pair twice: we keep one of them
-// if the boxes overlap, so the answer is exact. Nothing is missed, as we hand over bounds which do
-// not lose anything on the way (lowerBoundFor()): Embree drops boxes beyond 1.8e18, and while it
-// builds denormal numbers count as 0. All of its other arithmetic on bounds are minima and maxima
-// of floats.
+// Embree reports pairs of primitives that may overlap, each pair twice: one of them is kept if the
+// boxes overlap, so the answer is exact. No pair is missed, as the bounds passed to it are adjusted
+// (lowerBoundFor()): Embree drops boxes beyond 1.8e18, and treats denormal numbers as 0 during the
+// build. All of its other arithmetic on bounds is minima and maxima of floats.
 //
-// Its threads are those of TBB, in an arena of as many as we are given, or as there are cores.
+// Its threads are those of TBB, in an arena limited to the given threads and the number of cores.
 //
-// Nothing is drawn: the library does not show its hierarchy.
+// No drawing: the library does not expose its hierarchy.
 //
 // Papers: I. Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014;
 // C. Lauterbach et al., "Fast BVH Construction on GPUs", 2009 (the Morton build). Library: Embree
@@ -44,31 +43,35 @@ using Device = std::unique_ptr<RTCDeviceTy, Destroy<rtcReleaseDevice>>;
 using Scene = std::unique_ptr<RTCSceneTy, Destroy<rtcReleaseScene>>;
 using Geometry = std::unique_ptr<RTCGeometryTy, Destroy<rtcReleaseGeometry>>;
 
-/// Boxes are taken for no farther away than this: surfaces must not overflow, and Embree drops what
-/// is beyond its FLT_LARGE, 1.844e18.
-constexpr float kFarthest = 1e15F;
-/// What becomes 0 where denormal numbers do is less than half of this.
-constexpr float kRim = 2 * std::numeric_limits<float>::min();
+/// Boxes are clamped to this distance: surface areas must not overflow, and Embree drops boxes
+/// beyond its FLT_LARGE, 1.844e18.
+constexpr float kMaxBound = 1e15F;
+/// More than twice any number that is flushed to 0.
+constexpr float kBoundMargin = 2 * std::numeric_limits<float>::min();
 
-/// A dynamic scene has another way for geometries of up to four primitives, which fails on boxes
-/// without extent; and there is no hierarchy of less than two.
-constexpr std::size_t kFew = 4;
+/// Up to this many primitives, dynamic scenes use another code path, which fails on boxes without
+/// extent; and a hierarchy needs two primitives.
+constexpr std::size_t kMaxBruteForce = 4;
 
-/// Bounds for Embree that it keeps. They never swap places, so boxes that overlap still do; but
-/// next to 0 and far away they are the very floats.
-float lowerBoundFor(float bound) { return std::min(std::max(bound - kRim, -kFarthest), kFarthest); }
-float upperBoundFor(float bound) { return std::min(std::max(bound + kRim, -kFarthest), kFarthest); }
+/// Adjusted bounds, which Embree preserves. They are monotonic, so boxes that overlap still do;
+/// except near 0 and far away they are the original floats.
+float lowerBoundFor(float bound) {
+  return std::min(std::max(bound - kBoundMargin, -kMaxBound), kMaxBound);
+}
+float upperBoundFor(float bound) {
+  return std::min(std::max(bound + kBoundMargin, -kMaxBound), kMaxBound);
+}
 
-/// Embree's device, which takes milliseconds to make, and the threads that work for it.
+/// Embree's device, which takes milliseconds to make, and its threads.
 class Threads final : public SharedResource {
  public:
   explicit Threads(const ExecutionContext& execution)
-      // TBB has no more threads than there are cores, and prints a warning when asked for them.
+      // TBB has no more threads than cores, and prints a warning on requests for more.
       : Threads(std::min(execution.threads(), tbb::info::default_concurrency())) {}
 
   [[nodiscard]] RTCDevice device() const { return device_.get(); }
 
-  /// Has the library do work(), and throws what it reports as an error code.
+  /// Runs work() in the library, and throws its error code as an exception.
   template <class Work>
   void run(Work work) {
     RTCError error = RTC_ERROR_NONE;
@@ -102,7 +105,7 @@ class Embree final : public BoxBroadPhase {
   }
 
   void updateStructures() override {
-    if (boxes().size() <= kFew) return;
+    if (boxes().size() <= kMaxBruteForce) return;
     threads_->run([this] {
       rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes().size()));
       rtcCommitGeometry(geometry_.get());
@@ -134,7 +137,7 @@ class Embree final : public BoxBroadPhase {
   }
 
   void findPairs() override {
-    if (boxes().size() <= kFew) {
+    if (boxes().size() <= kMaxBruteForce) {
       for (const Pair pair : bruteForcePairs(boxes())) pairs().add(pair.a, pair.b);
       return;
     }
@@ -143,7 +146,7 @@ class Embree final : public BoxBroadPhase {
 
   static void report(void* self, RTCCollision* found, unsigned count) {
     auto& embree = *static_cast<Embree*>(self);
-    PairBuffer* own = nullptr;  // asked for where there is a pair: that takes time
+    PairBuffer* own = nullptr;  // queried on the first pair only, as that takes time
     for (unsigned i = 0; i < count; ++i) {
       const std::uint32_t a = found[i].primID0;
       const std::uint32_t b = found[i].primID1;

@@ -1,30 +1,29 @@
-// FCL's dynamic trees of boxes (DynamicAABBTreeCollisionManager), with nodes that point to each
-// other or, the other flavour, in an array: a leaf whose box changed is taken out and put in again,
-// and the tree is descended against itself. O(m log n + n + k) a frame for m bodies that move, if
-// the tree is balanced. O(n + k) space.
+// FCL's dynamic trees of boxes (DynamicAABBTreeCollisionManager), with linked nodes or, in the
+// other variant, nodes in an array: a leaf with a changed box is removed and reinserted, and the
+// tree is traversed against itself. O(m log n + n + k) a frame for m moved bodies, if the tree is
+// balanced. O(n + k) space.
 //
-// As the library has it: all objects are registered at once, then setup() is called; in a frame,
-// update() with those that moved ("update the manager by explicitly given the set of objects
-// update"). update() without arguments refits the tree to all of them, which is quicker, but leaves
-// a tree of large nodes when bodies pass each other. Where more than half of the bodies have left
-// their boxes altogether all are registered anew, which is quicker than to move so many leaves. All
-// objects share one shape, which nobody looks at; their boxes are set directly.
+// As recommended by the library: all objects are registered at once, then setup() is called; in a
+// frame, update() with the moved objects ("update the manager by explicitly given the set of
+// objects update"). update() without arguments refits the tree to all of them, which is faster, but
+// leaves a tree of large nodes when bodies pass each other. If more than half of the bodies have
+// left their boxes entirely, all are registered again, which is faster than moving that many
+// leaves. All objects share one unused shape; their boxes are set directly.
 //
-// The flavour with an array has faults in its update(): it puts a leaf back near where it was,
-// however far it went, forgets an only leaf, and when it balances the tree from the top it numbers
-// the leaves anew, after which it updates wrong ones. There a body that moved is unregistered and
-// registered again; all are registered at once only in the beginning, as that leaks memory. When
-// the array is full and grows, it reads two boxes from the old array, which it has just freed: so
-// it is never let grow. Spare bodies are registered with the others and taken out again, which
-// leaves room for those to come; if that is not enough, all are registered anew with twice the
-// room.
+// The array variant has bugs in its update(): it reinserts a leaf near its old position, however
+// far it moved, loses a single leaf, and when it balances the tree from the top it renumbers the
+// leaves, and updates wrong ones afterwards. There a moved body is unregistered and registered
+// again; all are registered at once only initially, as that leaks memory. When the array is full
+// and grows, it reads two boxes from the old array after freeing it: so growth is avoided. Spare
+// bodies are registered with the others and removed again, which leaves room for later bodies; if
+// that is not enough, all are registered again with twice the room.
 //
-// The library works in double precision. It takes boxes for the same that differ by less than 100
-// epsilon of a corner's distance from the origin, so each box is given a rim wider than that; and a
-// leaf whose new box is inside of its old one keeps that. Pairs are tested with the boxes
-// themselves, so the answer is exact.
+// The library works in double precision. It treats boxes as equal that differ by less than 100
+// epsilon of a corner's distance from the origin, so each box is enlarged by more than that; and a
+// leaf with a new box inside its old one keeps the old one. Pairs are tested with the original
+// boxes, so the answer is exact.
 //
-// Nothing is drawn: the library does not show its trees.
+// No drawing: the library does not expose its trees.
 //
 // Paper: J. Pan, S. Chitta, D. Manocha, "FCL: A General Purpose Library for Collision and Proximity
 // Queries", ICRA 2012. Library: the Flexible Collision Library.
@@ -49,7 +48,7 @@
 namespace broadmark::fcl_tree {
 namespace {
 
-/// A body in the library's eyes.
+/// A body as an object of the library.
 class Body final : public fcl::CollisionObjectd {
  public:
   Body(const std::shared_ptr<fcl::CollisionGeometryd>& shape, std::uint32_t number)
@@ -57,7 +56,7 @@ class Body final : public fcl::CollisionObjectd {
 
   [[nodiscard]] std::uint32_t number() const { return number_; }
 
-  /// Whether the body has left the box that it had.
+  /// Sets the box. Returns whether the body has left the former box.
   bool place(const Aabb& box) {
     const fcl::AABBd before = aabb;
     double farthest = 0;
@@ -81,7 +80,7 @@ using Nodes = fcl::DynamicAABBTreeCollisionManagerd;
 using Array = fcl::DynamicAABBTreeCollisionManager_Arrayd;
 
 void update(Nodes& manager, const Bodies& moved) {
-  if (!moved.empty()) manager.update(moved);  // or the tree would be balanced further
+  if (!moved.empty()) manager.update(moved);  // without objects it would balance the tree further
 }
 
 void update(Array& manager, const Bodies& moved) {
@@ -91,7 +90,7 @@ void update(Array& manager, const Bodies& moved) {
   }
 }
 
-/// Whether more bodies than were registered at once must never be there.
+/// Whether the number of bodies must not exceed that of the last registration.
 template <class Manager>
 constexpr bool kHasFixedRoom = std::is_same_v<Manager, Array>;
 
@@ -101,7 +100,7 @@ class Fcl final : public MovedBoxes {
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
-    most_ = scene.objects;
+    max_bodies_ = scene.objects;
     for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
     registerAll();
   }
@@ -121,7 +120,7 @@ class Fcl final : public MovedBoxes {
         create(number);
       }
     }
-    if (kHasFixedRoom<Manager> ? bodies_.size() > room_ : jumps > bodies_.size() / 2) {
+    if (kHasFixedRoom<Manager> ? bodies_.size() > capacity_ : jumps > bodies_.size() / 2) {
       return registerAll();
     }
     update(manager_, updated_);
@@ -142,14 +141,14 @@ class Fcl final : public MovedBoxes {
     manager_.registerObjects(updated_);
     manager_.setup();
     for (Body& body : spare) manager_.unregisterObject(&body);
-    room_ = updated_.size();
+    capacity_ = updated_.size();
   }
 
-  /// So many that as many bodies may come as are there, or as there will ever be.
+  /// Enough to double the number of bodies, up to the scene's maximum.
   [[nodiscard]] std::deque<Body> spareBodies() const {
     std::deque<Body> spare;
     if (!kHasFixedRoom<Manager> || bodies_.empty()) return spare;
-    const std::size_t room = std::min(2 * bodies_.size(), most_);
+    const std::size_t room = std::min(2 * bodies_.size(), max_bodies_);
     for (std::size_t body = bodies_.size(); body < room; ++body) {
       spare.emplace_back(shape_, 0).place(boxes()[0]);
     }
@@ -173,8 +172,8 @@ class Fcl final : public MovedBoxes {
   std::deque<Body> bodies_;  ///< the manager holds their addresses
   Bodies updated_;
   Manager manager_;
-  std::size_t most_ = 0;  ///< bodies of the scene
-  std::size_t room_ = 0;  ///< bodies that were registered at once
+  std::size_t max_bodies_ = 0;  ///< bodies of the scene
+  std::size_t capacity_ = 0;    ///< number of bodies in the last registration
 };
 
 }  // namespace

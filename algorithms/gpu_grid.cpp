@@ -1,7 +1,6 @@
-// Hierarchical grid on a compute device: each body in one cell, of a level that fits its size;
-// bodies sorted by cell; each searches the cells around it on its own level and the coarser ones.
-// O(n + k) for bodies of any sizes, as long as few lie in one cell; memory is O(n), however far
-// apart they are.
+// Hierarchical grid on a compute device: each body is in one cell, of a level for its size; bodies
+// are sorted by cell; each queries the cells around it on its own level and the coarser ones. O(n +
+// k) for bodies of any sizes, as long as few share a cell; memory is O(n), regardless of distances.
 //
 // Papers: S. Le Grand, "Broad-Phase Collision Detection with CUDA", GPU Gems 3, 2007 (the sorted
 // grid); M. Teschner, B. Heidelberger, M. Müller, D. Pomeranets, M. Gross, "Optimized Spatial
@@ -22,7 +21,7 @@ namespace {
 /// Per body: enough for a cell each where bodies take a tenth of the space.
 constexpr std::size_t kMaxBuckets = 4;
 
-// As grid.cl has them.
+// As in grid.cl.
 constexpr int kLevels = 21;
 struct Grid {
   cl_float4 scale;
@@ -88,7 +87,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
     return static_cast<int>(grid_.bits.s[0] + grid_.bits.s[1] + grid_.bits.s[2]);
   }
 
-  /// Units about as large as a typical body; larger where a coordinate would take too many of them.
+  /// Units about as large as a typical body; larger if coordinates would need too many of them.
   void chooseGrid(const opencl::FrameSummary& summary) {
     constexpr double kMaxUnits = 1 << (kLevels - 1);
     double unit = std::max(summary.mean_edge * 1.01, 1e-30);
@@ -98,8 +97,8 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       unit = std::max({unit, (high - low) / (kMaxUnits - 2),
                        std::max(std::abs(low), std::abs(high)) / (1 << 23)});
     }
-    // Larger than bodies, so that there are few rows of cells to look into; more so where sixteen
-    // bodies are tested at once, but not along x, on which the next cell is next in memory.
+    // Larger than bodies, so that queries visit few rows of cells; more so where sixteen bodies are
+    // tested at once, but not along x, on which the next cell is contiguous in memory.
     const int across = likeGpu() ? 1 : 2;
     const std::array<int, 3> edge = {1, across, across};
     std::array<int, 3> bits{};
@@ -107,7 +106,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       grid_.scale.s[axis] = static_cast<float>(1 / unit);
       grid_.origin.s[axis] = summary.bounds.min[axis] * grid_.scale.s[axis];
       grid_.edge.s[axis] = static_cast<cl_uint>(edge[axis]);
-      // One more than there are, as a device may round otherwise.
+      // One more, as a device may round differently.
       const std::uint32_t units = unitOf(summary.bounds.max[axis], axis) + 1;
       bits[axis] = static_cast<int>(std::bit_width(units >> edge[axis]));
     }

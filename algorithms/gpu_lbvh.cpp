@@ -14,7 +14,7 @@
 namespace broadmark::gpu_lbvh {
 namespace {
 
-// As lbvh.cl has them.
+// As in lbvh.cl.
 constexpr int kKeyBits = 30;
 constexpr float kCellsPerAxis = 1024;
 constexpr std::uint32_t kLeaf = 0x80000000;
@@ -22,12 +22,12 @@ struct Node {
   std::array<Aabb, 2> child;
 };
 
-/// Ranges on the level above one of `count`.
+/// Number of ranges on the level above `count` ranges.
 constexpr std::size_t merged(std::size_t count) { return (count + 3) / 4; }
 
 class GpuLbvh final : public opencl::DeviceBroadPhase {
  public:
-  /// Reads the tree back and draws its inner nodes, to a depth that an eye can follow.
+  /// Reads the tree back and draws its inner nodes, to a visible depth.
   void drawStructure(DebugDraw& draw) const override {
     constexpr int kDeepest = 12;
     if (count() < 2) return;
@@ -69,7 +69,7 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
     cl_float4 scale{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low.s[axis] = summary.bounds.min[axis];
-      // Half the extent twice: the whole may be more than a float holds.
+      // Half the extent twice: the whole may exceed the range of a float.
       const float half = summary.bounds.max[axis] / 2 - summary.bounds.min[axis] / 2;
       scale.s[axis] = half > 0 ? kCellsPerAxis / 2 / half : 0;
       if (!(scale.s[axis] < 1e30F)) scale.s[axis] = 0;

@@ -1,7 +1,7 @@
 // Sweep and prune on a compute device: bodies sorted by their lower bound on the axis of largest
 // variance; each searches its own window, sixteen bodies at a time. O(n + w), w the pairs that
 // overlap on the sort axis: about n^(5/3) for evenly spread boxes. Any number of bodies, of any
-// sizes, that the device has memory for.
+// sizes, up to the device's memory.
 //
 // Papers: F. Liu, T. Harada, Y. Lee, Y. J. Kim, "Real-Time Collision Culling of a Million Bodies on
 // Graphics Processing Units", SIGGRAPH Asia 2010; D. G. Merrill and A. S. Grimshaw, "Revisiting

@@ -1,18 +1,18 @@
-// Uniform grid: boxes are copied into every cell they touch, and only boxes of the same cell are
-// tested against each other, by brute force (Grid BF) or by a sweep (Grid SAP). The cells cut space
-// on all three axes, or are columns, cut in x and z only. O(n + t), t the tests: n · m for brute
-// force, m the mean number of boxes in a cell, and less by the share of a cell that a box takes up
-// on the axis of the sweep.
+// Uniform grid: boxes get an entry in every cell they touch, and only boxes of the same cell are
+// tested against each other, by brute force (Grid BF) or by a sweep (Grid SAP). The cells divide
+// space on all three axes, or are columns, cut in x and z only. O(n + t), t the tests: n · m for
+// brute force, m the mean number of boxes in a cell, and less by the fraction of a cell that a box
+// occupies on the sweep axis.
 //
-// All is built anew each frame, in two counting sorts: of the copies by cell; and, for the sweep,
-// within each cell by the lower bound on the axis along which that cell's boxes are spread out
-// most, in as many buckets as there are boxes. A window ends with the bucket of the upper bound.
-// (To sort further within buckets would save fewer tests than it costs.) A pair that shares several
-// cells is reported in one of them: see CellBody.
+// The grid is rebuilt each frame by two counting sorts: of the entries by cell; and, for the sweep,
+// within each cell by the lower bound on the axis of that cell's largest spread, into one bucket
+// per box. A window ends with the bucket of the upper bound. (Sorting within buckets would save
+// fewer tests than it costs.) A pair that shares several cells is reported in one of them: see
+// CellBody.
 //
-// A box that touches more than kMaxCopies cells is copied into none. Such boxes lie in a cell of
-// their own, and each is tested against the contents of all cells that it touches. So there are
-// never more than kMaxCopies · n copies.
+// A box that touches more than kMaxEntries cells gets no entries. Such boxes are in a cell of their
+// own, and each is tested against the contents of all cells that it touches. So there are at most
+// kMaxEntries · n entries.
 //
 // Papers: C. Ericson, "Real-Time Collision Detection", 2005, 7.1 (uniform grids); Y. R. Serpa and
 // M. A. F. Rodrigues, "Broadmark: A Testing Framework for Broad-Phase Collision Detection
@@ -39,29 +39,29 @@
 namespace broadmark::grid {
 namespace {
 
-/// What a box of the size of a cell touches at most.
-constexpr std::size_t kMaxCopies = 8;
+/// The maximum for a box of the size of a cell.
+constexpr std::size_t kMaxEntries = 8;
 
 enum class Cut { columns, cells };
-enum class Search { brute_force, sweep };
+enum class CellSearch { brute_force, sweep };
 
-/// A body's copy in one of its cells.
-struct Copy {
+/// A body in one of its cells.
+struct CellEntry {
   std::uint32_t cell;
   CellBody body;
 };
 
-/// The axis of a cell's sweep, and the buckets of equal length on it that boxes are sorted into.
+/// The axis of a cell's sweep, and equal buckets of its range for sorting the boxes.
 class CellBuckets {
  public:
   /// A single bucket.
   CellBuckets() = default;
-  /// As many buckets as boxes, on the axis on which the range of lower bounds is the longest
-  /// compared with the boxes.
+  /// As many buckets as boxes, on the axis with the largest range of lower bounds relative to the
+  /// boxes.
   explicit CellBuckets(std::span<const Aabb> boxes) {
     Corner least = cornerOf(boxes.front().min);
     Corner most = least;
-    Corner edges{};  // the sum of them
+    Corner edges{};  // their sum
     for (const Aabb& box : boxes) {
       const Corner min = cornerOf(box.min);
       least = smaller(least, min);
@@ -72,7 +72,7 @@ class CellBuckets {
     for (int axis = 0; axis < 3; ++axis) {
       const float range = most[axis] - least[axis];
       const float width = range / edges[axis];
-      if (!(width > widest)) continue;  // also when it is 0/0
+      if (!(width > widest)) continue;  // false, too, for 0/0
       widest = width;
       axis_ = axis;
       low_ = least[axis];
@@ -102,7 +102,7 @@ class CellBuckets {
 
 class Grid final : public PairBroadPhase {
  public:
-  Grid(Cut cut, Search search, std::int64_t objects_per_cell)
+  Grid(Cut cut, CellSearch search, std::int64_t objects_per_cell)
       : cut_(cut), search_(search), objects_per_cell_(objects_per_cell) {}
 
   void visitParameters(const ParameterVisitor& visit) override {
@@ -129,9 +129,9 @@ class Grid final : public PairBroadPhase {
   void updateStructures() override {
     const std::size_t cells = boxes_.size() / static_cast<std::size_t>(objects_per_cell_);
     grid_.fit(boxes_, cells, cut_ == Cut::columns);
-    findCopies();
-    placeCopies();
-    sortCopies();
+    findEntries();
+    placeEntries();
+    sortEntries();
     orderCells();
     shares_.measureRows(ends_, team());
   }
@@ -141,12 +141,12 @@ class Grid final : public PairBroadPhase {
   [[nodiscard]] std::string validate() const override;
 
  private:
-  /// One worker's own data, on cache lines of their own.
+  /// One worker's data, on separate cache lines.
   struct alignas(64) Worker {
-    std::vector<Copy> copies;            ///< of its share of the boxes
-    std::vector<std::uint32_t> places;   ///< per cell: number of its copies, then where they go
-    std::vector<Aabb> boxes;             ///< of the cell at hand
-    std::vector<std::uint32_t> buckets;  ///< likewise: number of boxes, then where they end
+    std::vector<CellEntry> entries;      ///< of its share of the boxes
+    std::vector<std::uint32_t> places;   ///< per cell: number of entries, then insertion index
+    std::vector<Aabb> boxes;             ///< of the current cell
+    std::vector<std::uint32_t> buckets;  ///< number of boxes per bucket, then end of each bucket
   };
 
   /// The cell of the boxes that touch too many others. Cell k of the grid is cell k + 1 here.
@@ -160,8 +160,8 @@ class Grid final : public PairBroadPhase {
       kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.of(worker),
                             pairs(worker));
       for (std::size_t i = part.begin; i < part.end; ++i) {
-        forEachRowOfCells(i, [&](Range copies, CellBody phantoms) {
-          kernels_->test_row(arrays_, i, bodies_[i] | phantoms, copies, bodies_.data(),
+        forEachRowOfCells(i, [&](Range entries, CellBody phantoms) {
+          kernels_->test_row(arrays_, i, bodies_[i] | phantoms, entries, bodies_.data(),
                              pairs(worker));
         });
       }
@@ -169,16 +169,16 @@ class Grid final : public PairBroadPhase {
   }
 
   [[nodiscard]] std::size_t cellCount() const { return grid_.size() + 1; }
-  /// The copies in a cell.
+  /// The entries of a cell.
   [[nodiscard]] Range contents(std::size_t cell) const {
     return {starts_[cell], starts_[cell + 1]};
   }
 
-  /// Calls visit(cell, phantoms) for each cell that gets a copy of the box.
+  /// Calls visit(cell, phantoms) for each cell that gets an entry of the box.
   template <class Visit>
   void forEachCell(const Aabb& box, Visit visit) const {
     const CellRange range = grid_.touched(box);
-    if (range.count() > kMaxCopies) {
+    if (range.count() > kMaxEntries) {
       visit(kLarge, 0);
     } else {
       grid_.forEachCell(range,
@@ -186,14 +186,14 @@ class Grid final : public PairBroadPhase {
     }
   }
 
-  void findCopies() {
+  void findEntries() {
     team().run(boxes_.size(), [&](int worker, Range part) {
       Worker& mine = workerData(worker);
-      mine.copies.clear();
+      mine.entries.clear();
       mine.places.assign(cellCount(), 0);
       for (std::size_t i = part.begin; i < part.end; ++i) {
         forEachCell(boxes_[i], [&](std::size_t cell, CellBody phantoms) {
-          mine.copies.push_back(
+          mine.entries.push_back(
               {static_cast<std::uint32_t>(cell), static_cast<CellBody>(i) | phantoms});
           ++mine.places[cell];
         });
@@ -201,9 +201,9 @@ class Grid final : public PairBroadPhase {
     });
   }
 
-  /// Turns counts into places, cell by cell and within it worker by worker: the order of the copies
-  /// is that of the bodies, for any team.
-  void placeCopies() {
+  /// Turns counts into indices, by cell and then by worker: the order of the entries is that of the
+  /// bodies, for any team.
+  void placeEntries() {
     starts_.resize(cellCount() + 1);
     std::uint32_t place = 0;
     for (std::size_t cell = 0; cell < cellCount(); ++cell) {
@@ -211,25 +211,25 @@ class Grid final : public PairBroadPhase {
       for (Worker& worker : workers_) place += std::exchange(worker.places[cell], place);
     }
     starts_.back() = place;
-    copies_.resize(place);
+    entries_.resize(place);
     arrays_.resize(place);
     bodies_.resize(place);
     ends_.resize(place);
   }
 
-  void sortCopies() {
+  void sortEntries() {
     team().run([&](int worker) {
       Worker& mine = workerData(worker);
-      for (const Copy copy : mine.copies) copies_[mine.places[copy.cell]++] = copy.body;
+      for (const CellEntry entry : mine.entries) entries_[mine.places[entry.cell]++] = entry.body;
     });
   }
 
-  /// Puts every cell's copies in order. Workers get whole cells, about as many copies each: a
-  /// crowded cell falls to one of them, but this is linear, and the search is shared out by rows.
+  /// Sorts every cell's entries. Workers get whole cells, with about as many entries each: a
+  /// crowded cell is sorted by one worker, but this is linear, and the search is divided by rows.
   void orderCells() {
     team().run([&](int worker) {
       const auto first_cell = [&](int k) {
-        const std::size_t place = share(copies_.size(), team().size(), k).begin;
+        const std::size_t place = share(entries_.size(), team().size(), k).begin;
         return std::ranges::lower_bound(starts_, place) - starts_.begin();
       };
       for (auto cell = first_cell(worker); cell < first_cell(worker + 1); ++cell) {
@@ -239,17 +239,17 @@ class Grid final : public PairBroadPhase {
     });
   }
 
-  /// Sorts a cell's copies by bucket of their lower bound; the window of each ends with the bucket
+  /// Sorts a cell's entries by bucket of their lower bound; the window of each ends with the bucket
   /// of its upper bound. For brute force there is one bucket.
   void orderCell(Range range, Worker& worker) {
     std::vector<Aabb>& boxes = worker.boxes;
     boxes.resize(range.end - range.begin);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const std::size_t ahead = range.begin + i + kPrefetchDistance;
-      if (ahead < copies_.size()) prefetch(&boxes_[bodyId(copies_[ahead])]);
-      boxes[i] = boxes_[bodyId(copies_[range.begin + i])];
+      if (ahead < entries_.size()) prefetch(&boxes_[bodyId(entries_[ahead])]);
+      boxes[i] = boxes_[bodyId(entries_[range.begin + i])];
     }
-    const CellBuckets buckets = search_ == Search::sweep ? CellBuckets(boxes) : CellBuckets();
+    const CellBuckets buckets = search_ == CellSearch::sweep ? CellBuckets(boxes) : CellBuckets();
     const int axis = buckets.axis();
     std::vector<std::uint32_t>& places = worker.buckets;
     places.assign(buckets.count(), 0);
@@ -259,14 +259,14 @@ class Grid final : public PairBroadPhase {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const std::uint32_t place = places[buckets.of(boxes[i].min[axis])]++;
       arrays_.set(place, boxes[i]);
-      bodies_[place] = copies_[range.begin + i];
+      bodies_[place] = entries_[range.begin + i];
     }
     const float* const max = arrays_.max(axis);
     for (std::size_t i = range.begin; i < range.end; ++i) ends_[i] = places[buckets.of(max[i])];
   }
 
-  /// Calls visit(copies, phantoms) for the copies that the large box at i is tested against: all in
-  /// the cells that it touches, a row of cells (whose copies are contiguous) at a time.
+  /// Calls visit(entries, phantoms) for the entries that the large box at i is tested against: all
+  /// in the cells that it touches, a row of cells (with contiguous entries) at a time.
   template <class Visit>
   void forEachRowOfCells(std::size_t i, Visit visit) const {
     const CellRange range = grid_.touched(arrays_.box(i));
@@ -286,15 +286,15 @@ class Grid final : public PairBroadPhase {
   }
 
   Cut cut_;
-  Search search_;
+  CellSearch search_;
   std::int64_t objects_per_cell_;
   const OverlapKernels* kernels_ = nullptr;
   std::vector<Worker> workers_;
 
   std::vector<Aabb> boxes_;
   CellGrid grid_;
-  std::vector<std::uint32_t> starts_;  ///< of cells in what follows, and the end
-  std::vector<CellBody> copies_;       ///< by cell, in the order of the bodies
+  std::vector<std::uint32_t> starts_;  ///< start of each cell's entries, and the end
+  std::vector<CellBody> entries_;      ///< by cell, in the order of the bodies
   BoxArrays arrays_;                   ///< by cell, in the order of the sweep
   std::vector<CellBody> bodies_;       ///< of arrays_
   std::vector<std::uint32_t> ends_;    ///< of the windows of arrays_
@@ -302,28 +302,28 @@ class Grid final : public PairBroadPhase {
 };
 
 void Grid::drawStructure(DebugDraw& draw) const {
-  // More would hide one another. The fullest cells are drawn.
+  // More cells would hide each other. The fullest cells are drawn.
   constexpr std::size_t kMaxDrawn = 10'000;
   std::vector<std::size_t> cells;
   for (std::size_t cell = kLarge + 1; cell < cellCount(); ++cell) {
     if (starts_[cell] < starts_[cell + 1]) cells.push_back(cell);
   }
-  const auto copies = [&](std::size_t cell) { return starts_[cell + 1] - starts_[cell]; };
+  const auto population = [&](std::size_t cell) { return starts_[cell + 1] - starts_[cell]; };
   if (cells.size() > kMaxDrawn) {
-    std::ranges::nth_element(cells, cells.begin() + kMaxDrawn, std::ranges::greater(), copies);
+    std::ranges::nth_element(cells, cells.begin() + kMaxDrawn, std::ranges::greater(), population);
     cells.resize(kMaxDrawn);
   }
   Aabb bounds = kEmptyBox;
   for (const Aabb& box : boxes_) bounds = merged(bounds, box);
   for (const std::size_t cell : cells) {
-    draw.cell(grid_.cell(cell - 1, bounds), 0, copies(cell));
+    draw.cell(grid_.cell(cell - 1, bounds), 0, population(cell));
   }
   TestCounts tests(ends_.size());
   tests.addWindows(ends_);
   for (std::size_t i = 0; i < contents(kLarge).end; ++i) {
     forEachRowOfCells(i, [&](Range others, CellBody) { tests.add(i, others); });
   }
-  tests.tell(draw, [this](std::size_t i) { return bodyId(bodies_[i]); });
+  tests.report(draw, [this](std::size_t i) { return bodyId(bodies_[i]); });
 }
 
 void Grid::visitCounters(const CounterVisitor& visit) const {
@@ -333,8 +333,8 @@ void Grid::visitCounters(const CounterVisitor& visit) const {
 }
 
 std::string Grid::validate() const {
-  if (bodies_.size() > kMaxCopies * boxes_.size()) return "too many copies";
-  // Every copy a box should have, ticked off as the cells are gone through.
+  if (bodies_.size() > kMaxEntries * boxes_.size()) return "too many copies";
+  // The expected entries of each box, removed during the traversal of the cells.
   std::vector<std::vector<CellBody>> expected(cellCount());
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     forEachCell(boxes_[i], [&](std::size_t cell, CellBody phantoms) {
@@ -351,7 +351,7 @@ std::string Grid::validate() const {
     for (std::size_t i = begin; i < end; ++i) {
       const Aabb& box = boxes_[bodyId(bodies_[i])];
       if (arrays_.box(i) != merged(box, box))
-        return "a copy differs from its box";  // but for padding
+        return "a copy differs from its box";  // except the padding
       if (ends_[i] <= i || ends_[i] > end) return "window out of range";
       for (std::size_t j = ends_[i]; j < end; ++j) {
         if (broadmark::overlaps(box, arrays_.box(j))) return "window too short";
@@ -361,23 +361,23 @@ std::string Grid::validate() const {
   return {};
 }
 
-/// What tells the variants apart.
-struct Kind {
+/// The differences between the variants.
+struct GridVariant {
   std::string id;
   Cut cut = Cut::cells;
-  Search search = Search::brute_force;
+  CellSearch search = CellSearch::brute_force;
   std::int64_t objects_per_cell = 200;  ///< the original's default
   bool parallel = false;
 };
 
-Algorithm variant(const Kind& kind) {
-  const bool sweeps = kind.search == Search::sweep;
-  const std::string cells = kind.cut == Cut::columns ? "columns (cut in x and z), " : "cells, ";
-  return {.id = kind.id,
+Algorithm variant(const GridVariant& options) {
+  const bool sweeps = options.search == CellSearch::sweep;
+  const std::string cells = options.cut == Cut::columns ? "columns (cut in x and z), " : "cells, ";
+  return {.id = options.id,
           .family = sweeps ? "Grid SAP" : "Grid BF",
           .summary = "uniform grid of " + cells + (sweeps ? "a sweep" : "brute force") +
-                     " in each" + (kind.parallel ? ", on several threads" : ""),
-          .traits = {.parallel = kind.parallel,
+                     " in each" + (options.parallel ? ", on several threads" : ""),
+          .traits = {.parallel = options.parallel,
                      .vectorised = true,
                      .changing_worlds = ChangingWorlds::compacted,
                      .side_by_side_below = 400,
@@ -389,17 +389,17 @@ Algorithm variant(const Kind& kind) {
                                          : "O(n + w), w pairs that share a cell",
                           .space = "O(n + k)",
                           .source = "Serpa and Rodrigues 2019; Ericson 2005, 7.1"},
-          .create = [kind] {
-            return std::make_unique<Grid>(kind.cut, kind.search, kind.objects_per_cell);
+          .create = [options] {
+            return std::make_unique<Grid>(options.cut, options.search, options.objects_per_cell);
           }};
 }
 
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  constexpr Search kSweep = Search::sweep;
-  // Swept columns are better off wider, as their sweeps are long: 16 to 29 % faster on 32,000 to a
-  // million bodies, slightly slower on 2,000.
+  constexpr CellSearch kSweep = CellSearch::sweep;
+  // Swept columns profit from a larger width, as their sweeps are long: 16 to 29 % faster on 32,000
+  // to a million bodies, slightly slower on 2,000.
   constexpr std::int64_t kSweptColumn = 1000;
   return {variant({.id = "grid-bf"}),
           variant({.id = "grid-bf-mt", .parallel = true}),

@@ -1,4 +1,4 @@
-// Variance of box centres, by which algorithms choose their axes.
+// Variance of box centres, for the choice of axes.
 #pragma once
 
 #include <algorithm>

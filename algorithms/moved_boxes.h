@@ -1,4 +1,4 @@
-// What algorithms share whose library is told what moves: the boxes, and which of them changed.
+// Shared base of algorithms with a library that requires notification of moves.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace broadmark {
 
-/// Keeps the boxes, and the bodies whose boxes differ from those of the frame before, as a game
-/// knows which bodies are awake.
+/// Stores the boxes, and the bodies that changed since the frame before, as a game tracks its awake
+/// bodies.
 class MovedBoxes : public BoxBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first,
@@ -28,7 +28,7 @@ class MovedBoxes : public BoxBroadPhase {
   void visitCounters(const CounterVisitor& visit) const override { visit("moves", moved_.size()); }
 
  protected:
-  /// The bodies that moved, came or went, ascending; after initialize() all.
+  /// The bodies that moved, appeared or vanished, ascending; after initialize() all.
   [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
 
  private:

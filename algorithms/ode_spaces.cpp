@@ -1,22 +1,21 @@
-// ODE's spaces. The hash space: grids of several resolutions in one hash table, a box in the grid
-// whose cells are just larger than it, and looked up in that and all coarser ones. The
-// sweep-and-prune space: a sweep along one axis over boxes sorted by radix. Both do all of it every
-// frame; what they keep are the boxes, of which only those that moved are asked for again. Hash:
-// O(n + k) time by the idea, but pairs are marked in a table of n² bits, cleared every frame, and
-// places are mixed so simply (100 x + 10 y + z) that large worlds crowd the hash table. Sweep:
-// O(n^5/3 + k) time for bodies spread evenly, O(n + k) space.
+// ODE's spaces. The hash space: grids of several resolutions in one hash table; a box is stored in
+// the grid with cells just larger than it, and queries that and all coarser ones. The
+// sweep-and-prune space: a sweep along one axis over radix-sorted boxes. Both repeat all of it
+// every frame; they only cache the boxes, and query those that moved. Hash: O(n + k) time in
+// theory, but pairs are marked in a table of n² bits, cleared every frame, and the hash of a cell
+// is so simple (100 x + 10 y + z) that large worlds crowd the table. Sweep: O(n^5/3 + k) time for
+// bodies spread evenly, O(n + k) space.
 //
-// Each body is a geom of a class of our own, whose bounding box is the body's (manual, "User
-// defined classes"). A geom that moved is marked by setting its position. The levels of the hash
-// space, its smallest and largest cells, are set for the boxes of each frame (dHashSpaceSetLevels):
-// the smallest so that most boxes are in one grid, but not so small that numbers of cells overflow,
-// which would end the program. The sweep takes the axes in an order that the header advises, X, Z,
-// Y.
+// Each body is a geom of a custom class, with the body's box as bounding box (manual, "User defined
+// classes"). Setting the position marks a geom as moved. The levels of the hash space, its smallest
+// and largest cells, are set for the boxes of each frame (dHashSpaceSetLevels): the smallest so
+// that most boxes are in one grid, but not so small that cell indices overflow, which would end the
+// program. The sweep uses the axis order recommended in the header, X, Z, Y.
 //
-// Debian's ODE works in double precision and only compares bounds; the sweep sorts them as floats,
-// which they were. So the answers are exact.
+// Debian's ODE works in double precision and only compares bounds; the sweep sorts them as the
+// original floats. So the answers are exact.
 //
-// Nothing is drawn: the library shows neither grids nor axes.
+// No drawing: the library exposes neither grids nor axes.
 //
 // Library: the Open Dynamics Engine, manual, "Collision Detection"; its sweep follows P. Terdiman's
 // OPCODE.
@@ -37,33 +36,33 @@
 namespace broadmark::ode_spaces {
 namespace {
 
-/// The hash space numbers the bits of its table of pairs, a row of whole bytes for each body, by
+/// The hash space indexes the bits of its table of pairs, a row of whole bytes for each body, by
 /// int.
 constexpr std::uint64_t kMaxHashedObjects = 131'071;
 
-/// What a geom of our class knows.
-struct Place {
+/// The data of a geom of this class.
+struct GeomData {
   const std::vector<Aabb>* boxes;
   std::uint32_t body;
 };
 
-const Place& placeOf(dGeomID geom) { return *static_cast<Place*>(dGeomGetClassData(geom)); }
+const GeomData& dataOf(dGeomID geom) { return *static_cast<GeomData*>(dGeomGetClassData(geom)); }
 
 void giveBounds(dGeomID geom, dReal bounds[6]) {
-  const Place& place = placeOf(geom);
-  const Aabb& box = (*place.boxes)[place.body];
+  const GeomData& data = dataOf(geom);
+  const Aabb& box = (*data.boxes)[data.body];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bounds[2 * axis] = box.min[axis];
     bounds[2 * axis + 1] = box.max[axis];
   }
 }
 
-/// The class of our geoms. The library is initialised, and knows of the class, once for the
+/// The class of the bodies' geoms. Initialises the library and registers the class, once per
 /// process.
 int geomClass() {
   static const int number = [] {
     dInitODE2(0);
-    const dGeomClass with_bounds = {.bytes = sizeof(Place),
+    const dGeomClass with_bounds = {.bytes = sizeof(GeomData),
                                     .collider = [](int) -> dColliderFn* { return nullptr; },
                                     .aabb = giveBounds,
                                     .aabb_test = nullptr,
@@ -78,7 +77,7 @@ class OdeSpace : public MovedBoxes {
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
-    geomClass();  // before anything else of the library
+    geomClass();  // before any other call of the library
     space_.reset(makeSpace());
     for (std::uint32_t body = 0; body < boxes().size(); ++body) add();
     prepare(*space_);
@@ -106,15 +105,15 @@ class OdeSpace : public MovedBoxes {
 
   void add() {
     dxGeom* const geom = dCreateGeom(geomClass());
-    *static_cast<Place*>(dGeomGetClassData(geom)) = {&boxes(),
-                                                     static_cast<std::uint32_t>(geoms_.size())};
+    *static_cast<GeomData*>(dGeomGetClassData(geom)) = {&boxes(),
+                                                        static_cast<std::uint32_t>(geoms_.size())};
     geoms_.push_back(geom);
     dSpaceAdd(space_.get(), geom);
   }
 
   void findPairs() override { dSpaceCollide(space_.get(), this, report); }
   static void report(void* self, dGeomID a, dGeomID b) {
-    static_cast<OdeSpace*>(self)->pairs().add(placeOf(a).body, placeOf(b).body);
+    static_cast<OdeSpace*>(self)->pairs().add(dataOf(a).body, dataOf(b).body);
   }
 
   std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>> space_;  ///< and its geoms
@@ -137,7 +136,7 @@ class Hash final : public OdeSpace {
       edges += edge;
       longest = std::max(longest, edge);
     }
-    constexpr double kMeanEdges = 2;  // quicker than 1 or 4, as measured
+    constexpr double kMeanEdges = 2;  // faster than 1 or 4, as measured
     constexpr int kBitsOfCell = 30;
     const int smallest = std::max(levelOf(kMeanEdges * edges / static_cast<double>(boxes().size())),
                                   levelOf(farthest) - kBitsOfCell);

@@ -26,8 +26,8 @@ void RadixSorter::count(int worker, int shift) {
   for (std::size_t i = begin; i < end; ++i) ++buckets[digit(entries_[i].key, shift)];
 }
 
-/// Turns counts into places, bucket by bucket and within it worker by worker, which keeps the sort
-/// stable. False if one bucket holds everything: then the order stays as it is.
+/// Turns counts into indices, by bucket and then by worker, which keeps the sort stable. False if
+/// one bucket contains everything: then the order is unchanged.
 bool RadixSorter::placeBuckets() {
   std::uint32_t place = 0;
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {

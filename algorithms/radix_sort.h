@@ -12,7 +12,7 @@
 
 namespace broadmark {
 
-/// A body with an integer that sorts as its float does.
+/// A body with an integer that sorts like its float.
 struct SortEntry {
   std::uint32_t key = 0;
   std::uint32_t body = 0;
@@ -25,23 +25,22 @@ constexpr std::uint32_t sortKey(float value) {
   return (bits & kSign) != 0 ? ~bits : bits | kSign;
 }
 
-/// Keeps the memory that sorting needs.
+/// Retains its memory.
 class RadixSorter {
  public:
   /// Room for `count` entries and a team of `workers`; allocates only to grow.
   void resize(std::size_t count, int workers);
 
-  /// The entries to be filled, then sort()ed.
+  /// The entries, to be filled before sort().
   std::span<SortEntry> entries() { return entries_; }
-  /// Sorts the entries by key, ascending, equal keys in their former order. `team` has the size
-  /// given to resize().
+  /// Sorts the entries by key, ascending and stable. `team` has the size given to resize().
   void sort(ThreadTeam& team);
 
  private:
   static constexpr int kDigitBits = 11;
   static constexpr std::size_t kBuckets = std::size_t{1} << kDigitBits;
   static std::size_t digit(std::uint32_t key, int shift) { return (key >> shift) & (kBuckets - 1); }
-  /// Per bucket: how many entries a worker has for it, then where its next one goes.
+  /// Per bucket: a worker's number of entries, then the index of its next one.
   using Buckets = std::array<std::uint32_t, kBuckets>;
 
   void count(int worker, int shift);

@@ -1,7 +1,7 @@
 // Self-checks: broad phases that find nothing, to measure the harness itself.
 //
 // `none` returns at once: its times are the overhead of the harness. `time-validator` busy-waits a
-// known time in each phase, which is what must be reported.
+// known time in each phase, which must be reported.
 
 #include <chrono>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace broadmark::self_checks {
 namespace {
 
-/// Directly on BroadPhase: a layer's copies and buffers would be in the time that is measured.
+/// Directly on BroadPhase: a layer's copies and buffers would be included in the times.
 class None : public BroadPhase {
  public:
   void initialize(const SceneInfo&, const Frame&, ExecutionContext&) override {}

@@ -1,5 +1,5 @@
-// Boxes sorted along an axis, and how far behind each of them others overlap it there: what sweeps
-// begin with.
+// Boxes sorted along an axis, with the window of overlapping boxes behind each: the start of a
+// sweep.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 
 namespace broadmark {
 
-/// Keeps its memory.
+/// Retains its memory.
 class SortedWindows {
  public:
   /// Sorts `count` boxes, of which box_of(i) is the i-th, by their lower bound on axes[0]. Every
-  /// step is shared out over the team.
+  /// step is divided among the team.
   template <class BoxOf>
   void build(std::size_t count, BoxOf box_of, const AxisOrder& axes, ThreadTeam& team) {
     sorter_.resize(count, team.size());
@@ -49,9 +49,9 @@ class SortedWindows {
 
   /// The sorted boxes, with their axes in the order of `axes`.
   [[nodiscard]] const BoxArrays& boxes() const { return boxes_; }
-  /// The number that each had before.
+  /// The original index of each sorted box.
   [[nodiscard]] const std::vector<std::uint32_t>& bodies() const { return bodies_; }
-  /// Box i overlaps those in (i, ends[i]) on the first axis, and none behind.
+  /// Box i overlaps the boxes in (i, ends[i]) on the first axis, and none behind.
   [[nodiscard]] const std::vector<std::uint32_t>& ends() const { return ends_; }
 
  private:
@@ -67,8 +67,8 @@ class SortedWindows {
     }
   }
 
-  /// The first position in [first, last) at which `inside` is false, else last; it is true before
-  /// and false from there on. Searches from `hint` outwards: O(log distance).
+  /// The first position in [first, last) at which `inside` is false, else last; `inside` is
+  /// monotonic. Searches from `hint` outwards: O(log distance).
   template <class Inside>
   static std::size_t boundaryNear(std::size_t hint, std::size_t first, std::size_t last,
                                   Inside inside) {
@@ -88,7 +88,7 @@ class SortedWindows {
       }
       if (last - first > step) first = last - step + 1;
     }
-    // Without a branch on what is found: it would be a coin toss for the predictor.
+    // Branchless, since the outcome is unpredictable.
     for (std::size_t count = last - first; count > 0;) {
       const std::size_t half = (count + 1) / 2;
       first += inside(first + half - 1) ? half : 0;

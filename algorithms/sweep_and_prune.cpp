@@ -2,10 +2,9 @@
 // axes against the boxes that begin before it ends. O(n log n + w) with comparison sorts, here
 // O(n + w), w the pairs that overlap on the sort axis: about n^(5/3) for evenly spread boxes.
 //
-// The axis of the largest variance of the box centres is chosen anew every frame, and everything is
-// sorted from scratch, by a radix sort. (To sort from last frame's order instead gains little: the
-// sweep takes nearly all of the time.) Bodies keep their own ids throughout; only an order of ids
-// is sorted.
+// The axis of the largest variance of the box centres is chosen every frame, and everything is
+// sorted from scratch, by a radix sort. (Sorting from last frame's order instead gains little: the
+// sweep takes nearly all of the time.) Bodies keep their ids; only an order of ids is sorted.
 //
 // Papers: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", PhD thesis, Cornell,
 // 1992 (the sweep); J. D. Cohen, M. C. Lin, D. Manocha, M. K. Ponamgi, "I-COLLIDE", I3D 1995 (the
@@ -27,7 +26,7 @@
 namespace broadmark::sweep_and_prune {
 namespace {
 
-/// Every step is shared out over the team; one thread is a team of one.
+/// Every step is divided among the team; one thread is a team of one.
 class SweepAndPrune final : public BoxBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first,
@@ -55,7 +54,7 @@ class SweepAndPrune final : public BoxBroadPhase {
     draw.line(from, to, StructureRole::split);
     TestCounts tests(sorted_.ends().size());
     tests.addWindows(sorted_.ends());
-    tests.tell(draw, [this](std::size_t i) { return sorted_.bodies()[i]; });
+    tests.report(draw, [this](std::size_t i) { return sorted_.bodies()[i]; });
   }
 
   [[nodiscard]] std::string validate() const override {
@@ -113,7 +112,7 @@ std::vector<Algorithm> variants() {
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019; Baraff 1992; Cohen et al. 1995; Ericson 2005, 7.5"}};
   Algorithm plain_family = family;
-  // Side by side, bodies share the sort axis with those of other worlds.
+  // Side by side, worlds overlap on the sort axis.
   plain_family.traits.side_by_side_below = 40;
   return {variantOf<SweepAndPrune>(plain_family, "sap",
                                    "sorts along the axis of largest variance and sweeps"),

@@ -1,4 +1,4 @@
-// In how many tests each body took part: counted anew from what was tested, to be drawn.
+// Counts the tests of each body, for drawing: recomputed from the tested ranges.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace broadmark {
 
-/// The tests of boxes that stand in an order, a row each. A row against any number of others counts
+/// Tests between the rows of an ordered array of boxes. A row against any range of rows is counted
 /// in O(1).
 class TestCounts {
  public:
@@ -28,9 +28,9 @@ class TestCounts {
     for (std::size_t row = 0; row < ends.size(); ++row) add(row, {row + 1, ends[row]});
   }
 
-  /// Tells them as those of bodyOf(row).
+  /// Reports the counts for bodyOf(row).
   template <class BodyOf>
-  void tell(DebugDraw& draw, BodyOf bodyOf) const {
+  void report(DebugDraw& draw, BodyOf bodyOf) const {
     std::uint32_t by_others = 0;
     for (std::size_t row = 0; row < own_.size(); ++row) {
       by_others += changes_[row];
@@ -40,7 +40,7 @@ class TestCounts {
 
  private:
   std::vector<std::uint32_t> own_;
-  /// Of how many rows are tested against this, from row to row.
+  /// Difference array of the number of rows tested against each row.
   std::vector<std::uint32_t> changes_;
 };
 

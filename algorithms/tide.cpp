@@ -214,7 +214,7 @@ void Tide::searchOverlaps() {
   countPairs();
 }
 
-/// Finds events, applies them to the pairs, and rebuilds a grid whose cells have become crowded.
+/// Finds events, applies them to the pairs, and rebuilds a grid with crowded cells.
 void Tide::searchGrid() {
   grid_->findEvents(filter_, began_, ended_);
   grid_->endFrame();

@@ -1,4 +1,4 @@
-// Shares things out over a team, by their work and not by their number.
+// Divides items among a team by their work instead of their number.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace broadmark {
 
-/// Shares are contiguous, and fixed by the work and the size of the team alone: so the memory that
-/// each worker needs is the same in every run.
+/// Shares are contiguous, and depend only on the work and the size of the team: so each worker
+/// needs the same memory in every run.
 class WorkShares {
  public:
-  /// Thing i of `count` takes work_of(i). Workers get whole chunks of things.
+  /// Item i of `count` takes work_of(i). Workers get whole chunks of items.
   template <class WorkOf>
   void measure(std::size_t count, std::size_t chunk, WorkOf work_of, ThreadTeam& team) {
     count_ = count;
@@ -40,7 +40,7 @@ class WorkShares {
         ends.size(), kRows, [&](std::size_t i) { return ends[i] - i; }, team);
   }
 
-  /// The things of one worker: all have about the same work.
+  /// The items of one worker: all shares have about the same work.
   [[nodiscard]] Range of(int worker) const {
     return {firstOf(worker), worker + 1 == workers_ ? count_ : firstOf(worker + 1)};
   }
@@ -57,7 +57,7 @@ class WorkShares {
   std::size_t count_ = 0;
   std::size_t chunk_ = 1;
   int workers_ = 1;
-  std::vector<std::uint64_t> work_;  ///< up to and with each chunk
+  std::vector<std::uint64_t> work_;  ///< prefix sums over chunks, inclusive
 };
 
 }  // namespace broadmark

@@ -14,7 +14,7 @@ namespace {
 
 using Row = std::vector<CaptionItem>;
 
-constexpr float kSmallestLetters = 9;  // pixels; smaller ones are illegible
+constexpr float kSmallestLetters = 9;  // pixels; smaller letters are illegible
 constexpr int kOpaque = 255;
 constexpr int kPanelAlpha = 210;  // the picture just shows through the panel
 
@@ -41,7 +41,7 @@ void fill(Picture& picture, const Rectangle& area, Rgb colour, int alpha) {
   }
 }
 
-/// The embedded font at one size. All lengths in pixels.
+/// The embedded font at a given size. All lengths are in pixels.
 class Typeface {
  public:
   explicit Typeface(float size) : size_(size) {
@@ -107,7 +107,7 @@ class Typeface {
   float scale_ = 0;
 };
 
-// Lengths in proportion to the size of the letters.
+// Lengths relative to the letter size.
 float gap(const Typeface& face) { return std::round(1.2F * face.size()); }
 int swatchSide(const Typeface& face) { return static_cast<int>(std::round(0.72F * face.size())); }
 float swatchRoom(const Typeface& face) {

@@ -1,4 +1,4 @@
-// Text and swatches, drawn into a finished picture by the processor: the same on every driver.
+// Text and swatches, drawn into a finished picture on the CPU, and equal with every driver.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace broadmark {
 
-/// A piece of a caption: printable ASCII in one colour, after a colour swatch if there is one.
+/// An item of a caption: an optional colour swatch, and printable ASCII in a colour.
 struct CaptionItem {
   std::string text;
   Rgb colour = 0;
   std::optional<Rgb> swatch = std::nullopt;
 };
 
-/// Rows of items on a panel of `background` in the picture's lower left corner. The size of the
-/// letters follows the picture's. Rows that are too long are drawn smaller; if they would become
-/// illegible, the whole caption is left out.
+/// Draws rows of items on a panel of `background` in the picture's lower left corner. The letter
+/// size scales with the picture, and is reduced if rows are too long. The caption is omitted if it
+/// would be illegible.
 void drawCaption(Picture& picture, const std::vector<std::vector<CaptionItem>>& rows,
                  Rgb background);
 

@@ -1,4 +1,4 @@
-// Every mode sorts the bodies into a few classes, each with a colour and an entry of the legend.
+// Every mode assigns the bodies to a few classes, each with a colour and a legend entry.
 #include "broadmark/render/colouring.h"
 
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 namespace broadmark {
 namespace {
 
-/// Gives each body the colour of its class, the legend's entry number classOf(body), and counts the
-/// bodies of each class. Absent ones have none.
+/// Gives each present body the colour of its class, with legend entry classOf(body), and counts the
+/// bodies of each class.
 template <class ClassOf>
 void colourByClass(std::span<const Aabb> boxes, std::vector<LegendEntry> legend,
                    Colouring& colouring, const ClassOf& classOf) {
@@ -37,7 +37,7 @@ std::uint32_t overlapsOf(const ColouringInput& input, std::size_t body) {
   return body < input.overlaps.size() ? input.overlaps[body] : 0;
 }
 
-/// Marks the bodies of some pairs.
+/// Sets the marks of the pairs' bodies to `value`.
 void mark(std::vector<std::uint8_t>& marks, std::span<const Pair> pairs, std::uint8_t value) {
   for (const Pair pair : pairs) {
     for (const std::uint32_t body : {pair.a, pair.b}) {
@@ -68,8 +68,8 @@ void colourByCount(const ColouringInput& input, Colouring& colouring) {
   });
 }
 
-/// Two sets of pairs that ought to be the same: those only in the first, those only in the second.
-/// `legend` is of bodies in these and of others in pairs.
+/// Colours the difference of two sets of pairs. `legend`: bodies in pairs of only the first set, of
+/// only the second set, and in other pairs.
 void colourByDifference(const ColouringInput& input, std::span<const Pair> first_only,
                         std::span<const Pair> second_only, std::vector<LegendEntry> legend,
                         Colouring& colouring) {
@@ -79,7 +79,7 @@ void colourByDifference(const ColouringInput& input, std::span<const Pair> first
     classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
   }
   mark(classes, second_only, 1);
-  mark(classes, first_only, 0);  // last: a missed pair is the worse fault
+  mark(classes, first_only, 0);  // last, because a missed pair is the worse fault
   colourByClass(input.boxes, std::move(legend), colouring,
                 [&](std::size_t body) { return classes[body]; });
 }
@@ -92,7 +92,7 @@ void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
       colouring);
 }
 
-/// All bodies in one class.
+/// Puts all bodies into one class.
 void colourAlike(const ColouringInput& input, const std::string& label, Rgb colour,
                  Colouring& colouring) {
   colourByClass(input.boxes, {{label, colour}}, colouring, [](std::size_t) { return 0U; });
@@ -104,15 +104,15 @@ void colourByTests(const ColouringInput& input, Colouring& colouring) {
     colourAlike(input, "not told", palette.unknown, colouring);
     return;
   }
-  std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t most = 0;
+  std::uint32_t min_count = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t max_count = 0;
   for (const std::uint32_t count : input.tests) {
-    if (count > 0) least = std::min(least, count);
-    most = std::max(most, count);
+    if (count > 0) min_count = std::min(min_count, count);
+    max_count = std::max(max_count, count);
   }
   std::vector<LegendEntry> legend = {{"0", palette.free}};
-  const CountSteps steps(std::min(least, most), most);
-  for (std::size_t step = 0; step < steps.size() && most > 0; ++step) {
+  const CountSteps steps(std::min(min_count, max_count), max_count);
+  for (std::size_t step = 0; step < steps.size() && max_count > 0; ++step) {
     legend.push_back({steps.text(step), palette.heat[steps.place(step)]});
   }
   colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
@@ -181,19 +181,19 @@ void colourByLayer(const ColouringInput& input, Colouring& colouring) {
 
 void colourBySize(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
-  constexpr float kMost = std::numeric_limits<float>::max();
-  float smallest = kMost;
+  constexpr float kMaxSize = std::numeric_limits<float>::max();
+  float smallest = kMaxSize;
   float largest = 0;
   for (const Aabb& box : input.boxes) {
     const auto size = static_cast<float>(longestEdge(box));  // 0: a point, or absent
     if (size > 0) smallest = std::min(smallest, size);
-    largest = std::max(largest, std::min(size, kMost));
+    largest = std::max(largest, std::min(size, kMaxSize));
   }
   if (!(smallest < largest)) {
     colourAlike(input, fmt::format("{:.3g}", largest), palette.size[2], colouring);
     return;
   }
-  // Steps of equal ratio. Points belong to the first step, like the smallest bodies.
+  // Steps of equal ratio. Points are in the first step, like the smallest bodies.
   const std::size_t steps = palette.size.size();
   std::array<float, std::tuple_size_v<decltype(Palette::size)>> begins{};
   std::vector<LegendEntry> legend;

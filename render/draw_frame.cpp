@@ -1,4 +1,4 @@
-// A picture of one frame, as in the paper's figures.
+// A picture of a frame, as in the paper's figures.
 
 #include <fmt/format.h>
 
@@ -16,12 +16,11 @@ namespace {
 
 constexpr const Palette& kPalette = kLightPalette;
 
-/// For each body whether it is in a pair. A wrong pair may name bodies that do not exist or are
-/// absent.
+/// Whether each body is in a pair. A wrong pair may name absent or non-existing bodies.
 std::vector<bool> overlappingBodies(std::span<const Aabb> boxes, PairRuns overlaps) {
   std::vector<bool> overlapping(boxes.size(), false);
-  for (const PairRun run : overlaps) {
-    for (const Pair pair : run) {
+  for (const PairRun pair_run : overlaps) {
+    for (const Pair pair : pair_run) {
       for (const std::uint32_t body : {pair.a, pair.b}) {
         if (body < boxes.size() && !isEmpty(boxes[body])) overlapping[body] = true;
       }
@@ -34,7 +33,7 @@ std::string counted(std::uint64_t count, std::string_view singular, std::string_
   return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }
 
-/// Names in a recording may have up to kLongestName characters.
+/// Names in a recording may have up to kMaxNameLength characters.
 std::string abbreviated(const std::string& text) {
   constexpr std::size_t kLongest = 32;
   return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
@@ -81,7 +80,7 @@ Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame
   content.boxes = frame.boxes;
   content.colours = colours;
   content.scale = std::max(1.0F, static_cast<float>(height) / 600);
-  // Always by OpenGL, also where it is slow: only OpenGL draws smooth borders.
+  // Always by OpenGL, even if it is slow, because only OpenGL draws smooth borders.
   SceneViewOptions options;
   options.technique = Technique::gl;
   options.samples = Framebuffer::kSamples;

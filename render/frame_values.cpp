@@ -1,5 +1,5 @@
-// A pyramid: each block is made of the two below it. Frames in a row are looked at by the largest
-// blocks that lie among them.
+// A pyramid: each block combines the two below it. A query of a range of frames visits the largest
+// blocks inside the range.
 
 #include "broadmark/render/frame_values.h"
 
@@ -13,8 +13,8 @@ FrameValues::Range united(FrameValues::Range a, FrameValues::Range b) {
   return {std::fmin(a.low, b.low), std::fmax(a.high, b.high)};
 }
 
-/// Calls `at(level, index)` with the largest blocks that make up the frames from `first` to `last`,
-/// in their order, until it returns true.
+/// Calls `at(level, index)` for the largest blocks that partition the frames from `first` to
+/// `last`, in order, until it returns true.
 template <class At>
 void visitBlocks(std::uint64_t first, std::uint64_t last, At&& at) {
   while (first <= last) {
@@ -41,14 +41,14 @@ void FrameValues::set(std::uint32_t frame, float value) {
       blocks[which] = united(block(level - 1, 2 * which), block(level - 1, 2 * which + 1));
     };
     unite(index);
-    if (is_new) unite(0);  // of what was known before
+    if (is_new) unite(0);  // from the values set before
   }
 }
 
 FrameValues::Range FrameValues::block(unsigned level, std::uint32_t index) const {
   if (level == 0) return {at(index), at(index)};
   if (level > levels_.size()) {
-    // Larger than all there is.
+    // A block larger than the whole pyramid.
     if (index > 0 || values_.empty()) return {};
     return levels_.empty() ? block(0, 0) : levels_.back().front();
   }

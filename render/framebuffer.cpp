@@ -17,7 +17,7 @@ GlObject makeRenderbuffer(const Gl& gl, int samples, GLenum format, int width, i
 
 struct PixelFormat {
   GLint inside;    ///< on the GPU
-  GLenum outside;  ///< in our memory
+  GLenum outside;  ///< in CPU memory
   GLenum type;
 };
 constexpr PixelFormat kColour = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
@@ -81,7 +81,7 @@ Framebuffer::Framebuffer(const Gl& gl, int width, int height, int samples)
     throw RenderError(fmt::format("OpenGL has no room for a picture of {} x {}", width, height));
   }
   samples = std::min(samples, gl.integer(GL_MAX_SAMPLES));
-  // If several samples a pixel do not fit, drawn_ is empty and we draw into the textures.
+  // If several samples per pixel do not fit, drawn_ is empty and drawing uses the textures.
   if (samples > 1) drawn_ = makeMultisampleTarget(samples);
 }
 
@@ -115,7 +115,7 @@ Picture readPicture(const Gl& gl, int width, int height) {
   gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
   gl.check("reading the picture back");
 
-  // Blending has changed the opacity, too.
+  // Blending also changed the opacity.
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
   // OpenGL's rows run from bottom to top.
   for (std::size_t top = 0, bottom = static_cast<std::size_t>(height) - 1; top < bottom;

@@ -72,8 +72,8 @@ constexpr std::pair<ImGuiKey_, Key> kImGuiKeys[] = {
 
 bool isModifier(Key key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-/// What the events of one picture have changed so far.
-struct Touched {
+/// The inputs changed by the events already applied to a picture.
+struct ChangedInputs {
   std::bitset<kKeys> keys;
   std::bitset<kButtons> buttons;
   bool mouse_moved = false;
@@ -86,33 +86,33 @@ bool inRange(int code, std::size_t count) {
   return code >= 0 && static_cast<std::size_t>(code) < count;
 }
 
-/// Whether the picture can tell `event` from those that came before.
-bool separable(const InputEvent& event, const Touched& touched) {
+/// Whether the picture can distinguish `event` from the events applied before.
+bool separable(const InputEvent& event, const ChangedInputs& changed) {
   const auto code = static_cast<std::size_t>(event.code);
   switch (event.kind) {
     case InputEvent::Kind::move:
     case InputEvent::Kind::leave:
-      return touched.buttons.none() && !touched.wheel;
+      return changed.buttons.none() && !changed.wheel;
     case InputEvent::Kind::wheel:
-      return touched.buttons.none();
+      return changed.buttons.none();
     case InputEvent::Kind::button:
       // Items that others may overlap, such as tabs, are pressed only if the mouse was over them in
-      // the picture before; and what is dragged must see the last move before the release.
-      return !touched.mouse_moved && !touched.buttons[code] && !touched.plain_key;
+      // the previous picture, and a dragged item must receive the last move before the release.
+      return !changed.mouse_moved && !changed.buttons[code] && !changed.plain_key;
     case InputEvent::Kind::character:
       return true;
     case InputEvent::Kind::key:
-      if (touched.character || touched.keys[code] || touched.buttons.any()) return false;
-      return !(isModifier(event.code) && touched.plain_key);
+      if (changed.character || changed.keys[code] || changed.buttons.any()) return false;
+      return !(isModifier(event.code) && changed.plain_key);
   }
   return true;
 }
 
-void apply(const InputEvent& event, Touched& touched, ImGuiIO& io) {
+void apply(const InputEvent& event, ChangedInputs& changed, ImGuiIO& io) {
   const auto code = static_cast<std::size_t>(event.code);
   switch (event.kind) {
     case InputEvent::Kind::move:
-      touched.mouse_moved |= io.MousePos.x != event.x || io.MousePos.y != event.y;
+      changed.mouse_moved |= io.MousePos.x != event.x || io.MousePos.y != event.y;
       io.MousePos = {event.x, event.y};
       break;
     case InputEvent::Kind::leave:
@@ -121,20 +121,20 @@ void apply(const InputEvent& event, Touched& touched, ImGuiIO& io) {
     case InputEvent::Kind::wheel:
       io.MouseWheelH += event.x;
       io.MouseWheel += event.y;
-      touched.wheel = true;
+      changed.wheel = true;
       break;
     case InputEvent::Kind::button:
       io.MouseDown[code] = event.down;
-      touched.buttons.set(code);
+      changed.buttons.set(code);
       break;
     case InputEvent::Kind::character:
       io.AddInputCharacter(static_cast<unsigned>(event.code));
-      touched.character = true;
+      changed.character = true;
       break;
     case InputEvent::Kind::key:
       io.KeysDown[code] = event.down;
-      touched.keys.set(code);
-      touched.plain_key |= !isModifier(event.code);
+      changed.keys.set(code);
+      changed.plain_key |= !isModifier(event.code);
       break;
   }
 }
@@ -172,12 +172,12 @@ std::string keyName(Key key) {
 }
 
 void InputQueue::applyTo(ImGuiIO& io) {
-  Touched touched;
+  ChangedInputs changed;
   while (!events_.empty()) {
     const InputEvent event = events_.front();
     if (isKnown(event)) {
-      if (!separable(event, touched)) break;
-      apply(event, touched, io);
+      if (!separable(event, changed)) break;
+      apply(event, changed, io);
     }
     events_.pop_front();
   }

@@ -1,4 +1,4 @@
-// Stands for the renderer in a build without it.
+// Replaces the renderer in a build without it.
 
 #include "broadmark/render/picture.h"
 

@@ -1,4 +1,4 @@
-// EGL without a display, and OSMesa. Of EGL are tried in this order: each device (hardware before
+// EGL without a display, and OSMesa. EGL is tried in this order: each device (hardware before
 // software), Mesa's surfaceless platform, the default display.
 #include "broadmark/render/offscreen_context.h"
 
@@ -17,7 +17,7 @@
 namespace broadmark {
 namespace {
 
-/// A library opened at run time. Stays loaded until the process ends: GL drivers start threads and
+/// A library opened at run time. It is never unloaded, because GL drivers start threads and
 /// register exit handlers, and crash when unloaded.
 class SharedLibrary {
  public:
@@ -27,7 +27,7 @@ class SharedLibrary {
     if (handle_ == nullptr) throw RenderError(name + " not found");
   }
 
-  /// Throws RenderError when the library has no such function.
+  /// Throws RenderError if the library does not have the function.
   template <class Function>
   Function get(const char* function) const {
     void* address = dlsym(handle_, function);
@@ -40,7 +40,7 @@ class SharedLibrary {
   void* handle_;
 };
 
-/// The functions of EGL that we call.
+/// The EGL functions in use.
 struct EglFunctions {
   explicit EglFunctions(const SharedLibrary& library)
       : getError(library.get<decltype(getError)>("eglGetError")),
@@ -56,7 +56,7 @@ struct EglFunctions {
         destroySurface(library.get<decltype(destroySurface)>("eglDestroySurface")),
         makeCurrent(library.get<decltype(makeCurrent)>("eglMakeCurrent")) {}
 
-  // NOLINTBEGIN(readability-identifier-naming): they are called like functions
+  // NOLINTBEGIN(readability-identifier-naming): named like functions
   decltype(&eglGetError) getError;
   decltype(&eglGetProcAddress) getProcAddress;
   decltype(&eglGetDisplay) getDisplay;
@@ -82,14 +82,14 @@ struct EglFunctions {
   }
 };
 
-/// Where a display may come from.
+/// A source of a display.
 struct DisplaySource {
   std::string name;
   EGLenum platform = EGL_NONE;  ///< none: the default display
   void* native = EGL_DEFAULT_DISPLAY;
 };
 
-/// Whether a space-separated list (null: empty) holds this extension.
+/// Whether a space-separated list (null: empty) contains this extension.
 bool hasExtension(const char* list, std::string_view extension) {
   return list != nullptr &&
          fmt::format(" {} ", list).find(fmt::format(" {} ", extension)) != std::string::npos;
@@ -125,8 +125,8 @@ std::vector<DisplaySource> displaySources(const EglFunctions& egl, bool software
   return sources;
 }
 
-/// One context on one display. The display is never terminated: all contexts of the process on the
-/// same device share it.
+/// A context on a display. The display is never terminated, because all contexts of the process on
+/// the same device share it.
 class Egl final : public OffscreenContext {
  public:
   Egl(const EglFunctions& egl, const DisplaySource& source) : egl_(egl), name_(source.name) {
@@ -207,7 +207,7 @@ class Egl final : public OffscreenContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-// From GL/osmesa.h: not worth a dependency on libosmesa6-dev.
+// From GL/osmesa.h, to avoid a dependency on libosmesa6-dev.
 using OSMesaContext = struct osmesa_context*;
 using Proc = void (*)();
 using MakeCurrent = unsigned char (*)(OSMesaContext, void*, GLenum, GLsizei, GLsizei);
@@ -220,7 +220,7 @@ enum Attribute : int {
   kMinorVersion = 0x37,
 };
 
-/// Mesa's software rasteriser as a plain library. Works where EGL has no driver.
+/// Mesa's software rasteriser as a plain library, which works without an EGL driver.
 class Osmesa final : public OffscreenContext {
  public:
   explicit Osmesa(const std::string& library_name)
@@ -259,7 +259,7 @@ class Osmesa final : public OffscreenContext {
   void (*destroy_)(OSMesaContext);
   Proc (*address_)(const char*);
   OSMesaContext context_ = nullptr;
-  // OSMesa wants a buffer of its own; we draw into a framebuffer object.
+  // OSMesa requires a buffer, although drawing uses a framebuffer object.
   std::array<std::uint8_t, std::size_t{4} * kSide * kSide> buffer_{};
 };
 

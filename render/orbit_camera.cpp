@@ -40,7 +40,7 @@ Vector3f centreOf(const Aabb& box) {
   return (Vector3f(box.min.data()) + Vector3f(box.max.data())) / 2;
 }
 
-/// In (-pi, pi]: the camera turns the short way round.
+/// An angle in (-pi, pi], so that the camera turns by the smaller angle.
 float shortestTurn(float angle) { return std::remainder(angle, kFullTurn); }
 
 float smooth(float t) {
@@ -48,7 +48,7 @@ float smooth(float t) {
   return clamped * clamped * (3 - 2 * clamped);
 }
 
-/// From a point to the nearest and to the farthest point of a box.
+/// The distances from a point to the nearest and the farthest point of a box.
 std::pair<float, float> distancesTo(const Aabb& box, const Vector3f& point) {
   const Vector3f low = Vector3f(box.min.data()) - point;
   const Vector3f high = Vector3f(box.max.data()) - point;
@@ -102,7 +102,7 @@ OrbitCamera panned(OrbitCamera camera, float right, float up) {
 OrbitCamera zoomed(OrbitCamera camera, float factor, const std::array<float, 3>& point) {
   const float distance =
       std::clamp(camera.distance * factor, OrbitCamera::kNearest, OrbitCamera::kFarthest);
-  // Eye and pivot move towards the point by the same factor, so it stays where it is seen.
+  // Eye and pivot move towards the point by the same factor, which preserves its screen position.
   const Vector3f fixed(point.data());
   camera = withPivot(camera, fixed + (pivotOf(camera) - fixed) * (distance / camera.distance));
   camera.distance = distance;
@@ -153,8 +153,8 @@ OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t) {
   camera.cut = std::lerp(from.cut, to.cut, s);
   camera.field_of_view = std::lerp(from.field_of_view, to.field_of_view, s);
   camera.distance = from.distance * std::pow(to.distance / from.distance, s);
-  // The way of the pivot shrinks like that of the distance. Otherwise the new pivot would leave the
-  // picture during a long zoom.
+  // The pivot moves in proportion to the distance. Otherwise the new pivot would leave the picture
+  // during a long zoom.
   const float change = from.distance - to.distance;
   const float remaining =
       std::abs(change) > 1e-3F * from.distance ? (camera.distance - to.distance) / change : 1 - s;
@@ -179,8 +179,8 @@ Camera toCamera(const OrbitCamera& orbit, double aspect, const Aabb& contents) {
   const float half_width = half_height * static_cast<float>(aspect);
   camera.window_min = {-half_width, -half_height};
   camera.window_max = {half_width, half_height};
-  // The near plane follows the distance of the pivot. Planes close to the contents give the depth
-  // more precision.
+  // The near plane depends on the pivot's distance. Planes close to the contents increase the depth
+  // precision.
   const auto [nearest, farthest] = distancesTo(contents, eye);
   camera.near = std::max(orbit.cut * orbit.distance, 0.5F * nearest);
   camera.far = std::max(1.02F * farthest, 2 * camera.near);

@@ -13,11 +13,11 @@ namespace broadmark {
 namespace {
 
 constexpr float kStructureWidth = 1;
-constexpr float kPopulationWidth = 2;  // wide enough for a colour to be seen
+constexpr float kPopulationWidth = 2;  // wide enough for colours to be visible
 
 std::array<float, 3> middleOf(const Aabb& box) {
   std::array<float, 3> middle;
-  // Halved first: the sum of two large coordinates may overflow.
+  // Halved first, because the sum of two large coordinates may overflow.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     middle[axis] = box.min[axis] / 2 + box.max[axis] / 2;
   }
@@ -25,8 +25,8 @@ std::array<float, 3> middleOf(const Aabb& box) {
 }
 
 template <class Item>
-void addUpTo(std::size_t most, std::vector<Item>& items, const Item& item, Overlay& overlay) {
-  if (items.size() < most) {
+void addUpTo(std::size_t limit, std::vector<Item>& items, const Item& item, Overlay& overlay) {
+  if (items.size() < limit) {
     items.push_back(item);
   } else {
     ++overlay.left_out;
@@ -56,11 +56,11 @@ Rgb colourOf(StructureRole role, const Palette& palette) {
     case StructureRole::resting_node:
       return palette.resting_node;
   }
-  return palette.cell;  // a worker process may send anything
+  return palette.cell;  // a worker process may send any value
 }
 
-/// Puts the fullest boxes first, and gives those that tell their populations a colour each. Returns
-/// what the colours mean.
+/// Sorts boxes by descending population, and assigns colours to boxes with a population. Returns
+/// the legend.
 std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& boxes,
                                             const Palette& palette, std::vector<Rgb>& colours) {
   std::ranges::stable_sort(boxes, std::ranges::greater(), &RecordedDrawing::Box::population);
@@ -91,8 +91,8 @@ Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineSty
     }
   }
   Overlay overlay;
-  for (const PairRun run : pairs) {
-    for (const Pair pair : run) {
+  for (const PairRun pair_run : pairs) {
+    for (const Pair pair : pair_run) {
       if (pair.a >= boxes.size() || pair.b >= boxes.size()) continue;
       if (!is_wanted[pair.a] && !is_wanted[pair.b]) continue;
       if (isEmpty(boxes[pair.a]) || isEmpty(boxes[pair.b])) continue;
@@ -114,7 +114,7 @@ Overlay structureOverlay(const RecordedDrawing& drawing, const StructureLook& lo
   }
   Overlay overlay;
   const Palette& palette = paletteOf(look.dark);
-  std::vector<Rgb> by_population;  // of the first boxes
+  std::vector<Rgb> by_population;  // the colours of the first boxes
   if (look.by_population) overlay.legend = colourByPopulation(boxes, palette, by_population);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const bool told = i < by_population.size();
@@ -132,7 +132,7 @@ Overlay structureOverlay(const RecordedDrawing& drawing, const StructureLook& lo
   return overlay;
 }
 
-bool tellsPopulations(const RecordedDrawing& drawing) {
+bool hasPopulations(const RecordedDrawing& drawing) {
   return std::ranges::any_of(drawing.boxes(), [](const auto& box) { return box.population > 0; });
 }
 

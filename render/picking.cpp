@@ -1,5 +1,5 @@
 // Picking tests a ray against the slabs of each box; selecting tests each box against the planes of
-// a frustum. O(n). Double precision: neither far-off nor tiny bodies are lost.
+// a frustum. O(n). Double precision preserves distant and tiny bodies.
 #include "broadmark/render/picking.h"
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Of a point or a corner: its first three numbers.
+/// The first three numbers of a point or a corner.
 template <class Numbers>
 Vector widened(const Numbers& numbers) {
   return Eigen::Vector3f(numbers.data()).cast<double>();
@@ -20,7 +20,7 @@ Vector eyeInWorld(const Camera& camera, const ViewSpace& space) {
   return Vector(space.origin.data()) + space.side * widened(camera.eye);
 }
 
-/// Where a point of the picture lies on the window at distance 1.
+/// The position of a picture's point on the window at distance 1.
 std::array<float, 2> onWindow(const Viewpoint& viewpoint, float x, float y) {
   const Camera& camera = viewpoint.camera;
   const float u = x / static_cast<float>(viewpoint.width);
@@ -43,7 +43,7 @@ SeenBox seenBox(const Aabb& box, const Vector& eye, double scale) {
   return {(widened(box.min) - eye) * scale, (widened(box.max) - eye) * scale};
 }
 
-/// Like the box shader: makes every side at least a given number of pixels long.
+/// Enlarges every side to at least a given number of pixels, like the box shader.
 void enlarge(SeenBox& box, const Vector& forward, double half_side_at_1) {
   const Vector centre = (box.low + box.high) / 2;
   const double half = half_side_at_1 * centre.dot(forward);
@@ -117,10 +117,10 @@ std::optional<PickedBody> pickBody(std::span<const Aabb> boxes, const ViewSpace&
     enlarge(box, forward, half_side);
     double enter = camera.near;
     double leave = nearest;
-    bool is_before = false;  // the box is in front of the eye, not around it
+    bool is_before = false;  // whether the box is in front of the eye, not around it
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // A ray in the plane of a face may make one of these NaN. Of two boxes that share the face
-      // one is then hit.
+      // A ray in the plane of a face may give NaN. One of two boxes that share the face is then
+      // hit.
       const double a = box.low[axis] * inverse[axis];
       const double b = box.high[axis] * inverse[axis];
       const double first = std::min(a, b);

@@ -1,5 +1,5 @@
-// Where several frames fall onto one pixel, blocks of frames are drawn in place of frames: the
-// largest that are no wider than a pixel. So the work depends on the pixels alone.
+// If several frames share a pixel, the plot draws the largest blocks of frames that are no wider
+// than a pixel, so the work depends only on the number of pixels.
 
 #include "broadmark/render/plot.h"
 
@@ -15,11 +15,11 @@ namespace broadmark {
 namespace {
 
 constexpr float kThinLineWidth = 1;
-constexpr float kMarkRow = 0.45F;   // of a line of text
-constexpr float kClickPixels = 3;   // a press that moves less is a click
-constexpr float kMarkedPixels = 4;  // so near a click is meant for a mark
+constexpr float kMarkRow = 0.45F;  // in lines of text
+constexpr float kClickPixels = 3;  // a press with less movement is a click
+constexpr float kMarkRadius = 4;   // distance in pixels within which a click selects a mark
 
-/// The plotted area, and how values become pixels.
+/// The plotted area, and the mapping from values to pixels.
 struct Axes {
   ImVec2 min;
   ImVec2 max;
@@ -33,7 +33,7 @@ struct Axes {
   [[nodiscard]] double frameAt(float pixel) const {
     return first + static_cast<double>((pixel - min.x) / (max.x - min.x)) * (last - first);
   }
-  /// The frame at a pixel that exists.
+  /// The existing frame nearest to a pixel.
   [[nodiscard]] std::uint32_t nearestFrame(float pixel) const {
     return static_cast<std::uint32_t>(std::max(std::round(frameAt(pixel)), 0.0));
   }
@@ -43,16 +43,16 @@ struct Axes {
   [[nodiscard]] unsigned level() const {
     return plotLevel((last - first) / static_cast<double>(max.x - min.x));
   }
-  /// The frames shown, also those of which only a part is.
+  /// The range of the values of all frames that are at least partly visible.
   [[nodiscard]] FrameValues::Range valuesOf(const FrameValues& values) const {
     return values.within(static_cast<std::uint32_t>(first),
                          static_cast<std::uint32_t>(std::ceil(last)));
   }
 
-  /// Calls `draw(from, to, range)` with the first and last frame of each block that is in sight,
-  /// also of those whose values are not known.
-  template <class Draw>
-  void eachBlock(const FrameValues& values, Draw&& draw) const {
+  /// Calls `visit(from, to, range)` with the first and last frame of each visible block, including
+  /// blocks with unknown values.
+  template <class Visit>
+  void eachBlock(const FrameValues& values, Visit&& visit) const {
     if (values.size() == 0) return;
     const unsigned level = this->level();
     const auto begin = static_cast<std::uint32_t>(first) >> level;
@@ -60,13 +60,13 @@ struct Axes {
         std::min(static_cast<std::uint32_t>(std::ceil(last)), values.size() - 1) >> level;
     for (std::uint32_t index = begin; index <= end; ++index) {
       const double from = static_cast<double>(std::uint64_t{index} << level);
-      draw(from, from + static_cast<double>((std::uint64_t{1} << level) - 1),
-           values.block(level, index));
+      visit(from, from + static_cast<double>((std::uint64_t{1} << level) - 1),
+            values.block(level, index));
     }
   }
 };
 
-/// A scale with room for all values of the curves.
+/// Fits the scale to all values of the curves.
 void fitScale(Axes& axes, const std::vector<const PlotCurve*>& curves) {
   FrameValues::Range range;
   for (const PlotCurve* curve : curves) {
@@ -104,19 +104,19 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
 }
 
 void drawArea(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
-  const float most = curve.values->within(0, curve.values->size()).high;
-  if (!(most > 0)) return;
+  const float max_value = curve.values->within(0, curve.values->size()).high;
+  if (!(max_value > 0)) return;
   axes.eachBlock(*curve.values, [&](double from, double to, FrameValues::Range range) {
     if (!range.known()) return;
     const float left = std::floor(axes.x(from - 0.5));
     const float right = std::max(std::floor(axes.x(to + 0.5)), left + 1);
-    const float top = axes.max.y - 0.92F * range.high / most * (axes.max.y - axes.min.y);
+    const float top = axes.max.y - 0.92F * range.high / max_value * (axes.max.y - axes.min.y);
     draw.AddRectFilled({left, top}, {right, axes.max.y}, packed(curve.colour, 38));
     draw.AddRectFilled({left, top - 1}, {right, top + 1}, packed(curve.colour, 120));
   });
 }
 
-/// Below the playhead, with its frame; at the border where it lies beyond it.
+/// The label below the playhead with its frame, clamped to the border if invisible.
 struct Flag {
   Flag(const Axes& axes, std::uint32_t frame) {
     const float line = ImGui::GetTextLineHeight();
@@ -148,7 +148,7 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, co
   }
 }
 
-/// The thin curve, on its scale at the right.
+/// Draws the thin curve with its scale at the right.
 void drawThin(ImDrawList& draw, const PlotCurve& curve, const Axes& shown) {
   const float line = ImGui::GetTextLineHeight();
   Axes axes = shown;
@@ -163,7 +163,7 @@ void drawThin(ImDrawList& draw, const PlotCurve& curve, const Axes& shown) {
   draw.PopClipRect();
 }
 
-/// At the border that it lies beyond, if it is out of range.
+/// Draws the limit, clamped to the border if it is out of range.
 void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
                const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeight();
@@ -183,7 +183,7 @@ void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
   draw.AddText(at, colour, text.c_str());
 }
 
-/// The rows of marks stand above the axes, the first on top.
+/// The top of the rows of marks, which are above the axes, from top to bottom.
 float marksTop(const Axes& axes, const PlotOptions& options) {
   return axes.min.y -
          kMarkRow * ImGui::GetTextLineHeight() * static_cast<float>(options.marks.size());
@@ -204,15 +204,15 @@ void drawMarks(ImDrawList& draw, const Axes& axes, const PlotOptions& options) {
   }
 }
 
-/// The marked frame that the mouse means.
+/// The marked frame at the mouse.
 std::optional<std::uint32_t> markedFrame(const Axes& axes, const PlotOptions& options,
                                          ImVec2 mouse) {
   const float row = (mouse.y - marksTop(axes, options)) / (kMarkRow * ImGui::GetTextLineHeight());
   if (row < 0 || row >= static_cast<float>(options.marks.size())) return {};
   std::optional<std::uint32_t> marked;
   for (const FrameValues* frames : options.marks[static_cast<std::size_t>(row)].frames) {
-    const auto found = frames->firstKnown(axes.nearestFrame(mouse.x - kMarkedPixels),
-                                          axes.nearestFrame(mouse.x + kMarkedPixels));
+    const auto found = frames->firstKnown(axes.nearestFrame(mouse.x - kMarkRadius),
+                                          axes.nearestFrame(mouse.x + kMarkRadius));
     if (found && (!marked || *found < *marked)) marked = found;
   }
   return marked;
@@ -238,7 +238,7 @@ void drawSpan(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
   draw.AddLine({right, axes.min.y}, {right, axes.max.y}, colours.playhead);
 }
 
-void tellOfScale(const PlotCurve* curve, std::uint32_t frame) {
+void showValue(const PlotCurve* curve, std::uint32_t frame) {
   if (curve == nullptr || std::isnan(curve->values->at(frame))) return;
   const std::string text =
       fmt::format("{} {}", curve->label, withPrefix(curve->values->at(frame), ""));
@@ -272,12 +272,12 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
     draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
   }
   if (!known) ImGui::TextUnformatted("not run yet");
-  tellOfScale(options.thin, frame);
-  tellOfScale(options.area, frame);
+  showValue(options.thin, frame);
+  showValue(options.area, frame);
   ImGui::EndTooltip();
 }
 
-/// Of the legend: the curves, then what is drawn behind them.
+/// The legend's entries: the curves, then the thin line and the area.
 std::vector<PlotEntry> entriesOf(const std::vector<PlotCurve>& curves, const PlotOptions& options) {
   std::vector<PlotEntry> entries;
   const auto add = [&](const PlotCurve& curve) {
@@ -289,8 +289,8 @@ std::vector<PlotEntry> entriesOf(const std::vector<PlotCurve>& curves, const Plo
   return entries;
 }
 
-/// What the mouse does with the plot, which is the last item.
-void takeMouse(const Axes& axes, const PlotOptions& options, PlotResult& result) {
+/// Handles mouse input to the plot, which is the last item.
+void handleMouse(const Axes& axes, const PlotOptions& options, PlotResult& result) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 pressed = io.MouseClickedPos[0];
   const double here = axes.frameAt(std::clamp(io.MousePos.x, axes.min.x, axes.max.x));
@@ -417,7 +417,7 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   if (!hovered && !ImGui::IsItemActive()) result.hovered.reset();
   if (result.hovered >= curves.size()) result.hovered.reset();
   if (result.hovered && ImGui::IsMouseClicked(0)) result.toggled = result.hovered;
-  takeMouse(axes, options, result);
+  handleMouse(axes, options, result);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const auto marked = markedFrame(axes, options, mouse);
   if (hovered && (axes.contains(mouse) || marked)) {

@@ -1,4 +1,4 @@
-// What plots are made of: scales, lines at round values, a legend.
+// Parts of plots: scales, grid lines, a legend.
 #pragma once
 
 #include <imgui.h>
@@ -16,7 +16,7 @@ constexpr float kPlotLineWidth = 1.6F;
 
 ImU32 packed(Rgb rgb, unsigned alpha = 255);
 
-/// What the style of Dear ImGui gives to the parts of a plot.
+/// The colours of a plot's parts, from Dear ImGui's style.
 struct PlotColours {
   ImU32 background = ImGui::GetColorU32(ImGuiCol_WindowBg);
   ImU32 frame = ImGui::GetColorU32(ImGuiCol_Border);
@@ -26,7 +26,7 @@ struct PlotColours {
   ImU32 span = ImGui::GetColorU32(ImGuiCol_CheckMark, 0.15F);
 };
 
-/// How numbers become pixels along one axis.
+/// The mapping from numbers to pixels along an axis.
 struct PlotScale {
   double low = 0;
   double high = 1;
@@ -36,7 +36,7 @@ struct PlotScale {
 
   [[nodiscard]] double scaled(double number) const;
   [[nodiscard]] float pixelOf(double number) const;
-  /// From `low` to `high` with some room beyond both, or, of a linear scale, from 0.
+  /// Sets the scale to a range with margins; a linear scale starts at 0.
   void fit(FrameValues::Range range);
 };
 
@@ -44,7 +44,7 @@ struct PlotScale {
 /// left.
 void drawValueLines(ImDrawList& draw, const PlotScale& scale, float left, float right,
                     const char* unit, const PlotColours& colours);
-/// Round values of a vertical scale; none so near to the one before that their texts would touch.
+/// Round values of a vertical scale, at distances that keep their labels apart.
 std::vector<double> valueTicks(const PlotScale& scale);
 
 struct PlotEntry {

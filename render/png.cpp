@@ -1,5 +1,5 @@
-// The stb libraries read and write PNG, with nothing that we do not use. (stb_truetype comes with
-// Dear ImGui.)
+// The stb libraries read and write PNG, without unused formats. (stb_truetype is part of Dear
+// ImGui.)
 #include <fmt/format.h>
 #define STBI_ONLY_PNG
 #define STBI_MAX_DIMENSIONS 32768

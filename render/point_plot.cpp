@@ -10,11 +10,11 @@
 namespace broadmark {
 namespace {
 
-constexpr float kPointRadius = 3.2F;  // of a line of text of 15 pixels
-constexpr float kMeantPixels = 10;    // so near a point the mouse means it
-constexpr double kRoomAcross = 0.05;  // of the axis, beyond the outermost points
+constexpr float kPointRadius = 3.2F;  // for lines of text of 15 pixels
+constexpr float kHoverRadius = 10;    // maximum distance of the mouse from a hovered point
+constexpr double kRoomAcross = 0.05;  // margin beyond the outermost points, relative to the axis
 
-/// Scales with room for all points.
+/// Scales that contain all points.
 struct PointAxes {
   PointAxes(const std::vector<PointCurve>& curves, bool logarithmic) {
     std::set<double> all_values;
@@ -37,13 +37,12 @@ struct PointAxes {
     return {across.pixelOf(point.across), values.pixelOf(point.value)};
   }
 
-  std::set<double> numbers;  ///< that points have across
+  std::set<double> numbers;  ///< the horizontal coordinates of the points
   PlotScale across;
   PlotScale values;
 };
 
-/// Lines at the numbers that points have; below them those that do not stand in each other's way,
-/// and of what they are.
+/// Draws lines at the points' numbers, their labels where they do not overlap, and the axis name.
 void drawNumbers(ImDrawList& draw, const PointAxes& axes, const char* across,
                  const PlotColours& colours) {
   const float top = axes.values.high_pixel;
@@ -75,7 +74,7 @@ std::optional<DrawnPoint> nearestTo(ImVec2 mouse, const std::vector<DrawnPoint>&
     return std::hypot(point.at.x - mouse.x, point.at.y - mouse.y);
   };
   const auto nearest = std::ranges::min_element(drawn, {}, distance);
-  if (nearest == drawn.end() || distance(*nearest) > kMeantPixels) return {};
+  if (nearest == drawn.end() || distance(*nearest) > kHoverRadius) return {};
   return *nearest;
 }
 

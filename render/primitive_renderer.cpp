@@ -82,7 +82,7 @@ GLint PrimitiveRenderer::uniform(const char* name) const {
 
 void PrimitiveRenderer::draw(const PrimitiveBuffer& primitives, const Viewpoint& viewpoint,
                              float opacity) const {
-  // A uniform that the shader does not use has location -1: setting it does nothing.
+  // A uniform that the shader does not use has location -1; setting it has no effect.
   const Camera& camera = viewpoint.camera;
   const std::array haze = components(viewpoint.haze);
   use();

@@ -1,6 +1,6 @@
-// Many small primitives (boxes, lines), drawn by vertex pulling: a primitive is two texels of a
-// buffer texture, and the vertex shader finds primitive and corner from gl_VertexID. No vertex
-// attributes, no indices; for small boxes and on software renderers this is faster than instancing.
+// Draws many small primitives (boxes, lines) by vertex pulling: a primitive is two texels of a
+// buffer texture, and the vertex shader computes primitive and corner from gl_VertexID, without
+// vertex attributes or indices. Faster than instancing for small boxes and on software renderers.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct Primitive {
   float colour = 0;  ///< 0xRRGGBB as a number, exact in a float. Its bits would be a denormal,
                      ///< which drivers may flush to 0
   std::array<float, 3> to{};
-  float width = 0;  ///< pixels: of a line its width, of a box the least width it is drawn with
+  float width = 0;  ///< pixels: a line's width, or a box's minimum width
 };
 static_assert(sizeof(Primitive) == 32);
 
@@ -38,23 +38,22 @@ class PrimitiveBuffer {
   std::vector<Batch> batches_;
 };
 
-/// Draws primitives of one kind from any viewpoint. Needs its context current from construction to
-/// destruction.
+/// Draws primitives of a kind from any viewpoint. Requires its context to be current from
+/// construction to destruction.
 class PrimitiveRenderer {
  public:
-  /// Draws at most `max_batch` primitives per call, fewer if the driver's buffer textures hold
-  /// less. Throws RenderError.
+  /// Draws at most `max_batch` primitives per call, or fewer if the driver's buffer textures are
+  /// smaller. Throws RenderError.
   PrimitiveRenderer(const Gl& gl, std::string_view vertex_source, std::string_view fragment_source,
                     int vertices_per_primitive,
                     std::size_t max_batch = std::numeric_limits<std::size_t>::max());
 
   /// Throws RenderError.
   [[nodiscard]] PrimitiveBuffer upload(std::span<const Primitive> primitives) const;
-  /// Draws into the current framebuffer. The opacity has an effect only with blending. Throws
-  /// RenderError.
+  /// Draws into the current framebuffer. The opacity requires blending. Throws RenderError.
   void draw(const PrimitiveBuffer& primitives, const Viewpoint& viewpoint, float opacity = 1) const;
 
-  /// Before setting uniforms that stay the same in all pictures.
+  /// Call before setting uniforms that are the same in all pictures.
   void use() const { gl_->UseProgram(program_.get()); }
   [[nodiscard]] GLint uniform(const char* name) const;
 
@@ -63,15 +62,16 @@ class PrimitiveRenderer {
 
   const Gl* gl_;
   GlObject program_;
-  GlObject vertex_array_;  // empty; the core profile wants one bound
+  GlObject vertex_array_;  // empty; the core profile requires a bound vertex array
   int vertices_per_primitive_;
   std::size_t batch_size_;
 };
 
-/// Of solid boxes with dark edges. The shaders do the shading and the edges, and choose the three
-/// faces that look at the camera.
+/// A renderer of solid boxes with dark edges. The shaders compute the shading and the edges, and
+/// select the three faces towards the camera.
 PrimitiveRenderer boxRenderer(const Gl& gl, std::size_t max_batch);
-/// Of straight lines of even width in pixels, with smooth borders. Draw them with blending.
+/// A renderer of straight lines of constant width in pixels, with smooth borders. Requires
+/// blending.
 PrimitiveRenderer lineRenderer(const Gl& gl);
 
 }  // namespace broadmark

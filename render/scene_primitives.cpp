@@ -10,7 +10,7 @@
 namespace broadmark {
 namespace {
 
-/// More outlines cost time and tell the eye nothing; the tint still shows what is selected.
+/// More outlines cost time without information, because the tint also shows the selection.
 constexpr std::size_t kMaxOutlines = 2000;
 constexpr float kOutlineWidth = 1.8F;
 constexpr float kSelectionTint = 0.45F;
@@ -19,7 +19,7 @@ std::array<float, 4> padded(const std::array<float, 3>& point) {
   return {point[0], point[1], point[2], 0};
 }
 
-/// A box that is drawn at least `width` pixels wide.
+/// A box with a minimum width in pixels.
 Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space, float width) {
   return {space.toView(box.min), static_cast<float>(colour), space.toView(box.max), width};
 }
@@ -52,7 +52,7 @@ std::vector<Primitive> floorGrid(const Aabb& box, Rgb colour, float width, const
   for (const auto& [along, across] : {std::pair<std::size_t, std::size_t>{0, 2}, {2, 0}}) {
     const int count = static_cast<int>(std::floor((high[across] - low[across]) / step + 0.001F));
     for (int i = 1; i <= count; ++i) {
-      // The line on the far wall is an edge of the world.
+      // The line at the far wall is an edge of the world.
       const float at = low[across] + static_cast<float>(i) * step;
       if (at > high[across] - 0.001F * step) break;
       std::array<float, 3> from = low;
@@ -93,7 +93,7 @@ void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTe
     if (isEmpty(content.boxes[body])) return false;
     return content.visible.empty() || content.visible[body] != 0;
   };
-  // The visible bodies of a worker's share follow those of the workers before it.
+  // The visible bodies of a worker's share follow those of the previous workers.
   const std::size_t count = content.boxes.size();
   std::vector<std::size_t> begins(static_cast<std::size_t>(team.size()) + 1, 0);
   team.run(count, [&](int worker, Range part) {

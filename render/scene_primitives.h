@@ -1,4 +1,4 @@
-// What a scene is drawn from: the content of a SceneView as boxes and lines in view space.
+// The content of a SceneView as boxes and lines in view space.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace broadmark {
 
-/// Lines that are seen under the same conditions.
+/// Lines with the same visibility.
 struct LineLayer {
-  float opacity_behind = 0;      ///< of what boxes hide
-  bool where_no_box_is = false;  ///< behind everything, however near
+  float opacity_behind = 0;      ///< of parts hidden by boxes
+  bool where_no_box_is = false;  ///< behind all boxes, at any distance
   std::vector<Primitive> lines;
 };
 
-/// Drawn in the order of the members: boxes with depth test; the floor wherever there is no box;
+/// Drawn in the order of the members: boxes with depth test; the floor in pixels without a box;
 /// lines, tested against the depths of the boxes.
 struct ScenePrimitives {
   std::vector<Primitive> boxes;
@@ -35,11 +35,11 @@ struct ScenePrimitives {
   };
 };
 
-/// These replace some of the primitives by what the content says now.
+/// Each function replaces some of the primitives by the current content; this one the bodies.
 void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTeam& team);
 /// Outlines of selected bodies.
 void setOutlines(ScenePrimitives& scene, const SceneViewContent& content);
-/// Lines and boxes of lines.
+/// Lines and wire boxes.
 void setLines(ScenePrimitives& scene, const SceneViewContent& content);
 /// Floor, grid and the edges of the world.
 void setSurroundings(ScenePrimitives& scene, const SceneViewContent& content);

@@ -1,4 +1,4 @@
-// The scene is drawn by OpenGL, or, where that runs on the processor, by the splatter.
+// OpenGL draws the scene, or the software renderer if OpenGL runs on the CPU.
 #include "broadmark/render/scene_view.h"
 
 #include <algorithm>
@@ -60,15 +60,15 @@ Aabb boundsOf(std::span<const Primitive> boxes, Aabb bounds) {
   return bounds;
 }
 
-// The small cross of axes in the lower left corner.
+// The small axes in the lower left corner.
 constexpr float kAxesMargin = 8;  ///< pixels, before scaling
 constexpr float kAxesSide = 96;   ///< pixels
 constexpr float kAxesWidth = 2.4F;
 
-// In lengths of an axis.
+// Relative to the length of an axis.
 constexpr float kAxesReach = 1.55F;  ///< half the side of the picture
 constexpr float kAxesLabels = 1.28F;
-constexpr float kAxesDistance = 8;  ///< of the eye
+constexpr float kAxesDistance = 8;  ///< distance of the eye
 
 /// A square picture that shows the unit axes from the direction of `viewpoint`'s camera.
 Viewpoint axesViewpoint(const Viewpoint& viewpoint, float scale) {
@@ -112,19 +112,19 @@ bool isSoftwareRenderer(const Gl& gl) {
          is_in_name("Software") || is_in_name("SwiftShader");
 }
 
-/// Keeps boxes and lines as primitives and makes them again only when the content has changed.
+/// Stores boxes and lines as primitives, and rebuilds them only if the content has changed.
 class SceneView::Painter {
  public:
   Painter(const Gl& gl, const SceneViewOptions& options)
       : gl_(&gl),
         team_(std::max(1, options.threads)),
-        splatter_(splats(gl, options.technique)
-                      ? std::make_unique<SoftwareRasterizer>(team_, options.isa)
-                      : nullptr),
+        rasterizer_(splats(gl, options.technique)
+                        ? std::make_unique<SoftwareRasterizer>(team_, options.isa)
+                        : nullptr),
         boxes_(boxRenderer(gl, options.max_batch)),
         lines_(lineRenderer(gl)) {}
 
-  /// Takes over what has changed in the content. Whether anything has.
+  /// Applies changes of the content. Returns whether anything has changed.
   bool update(const SceneViewContent& content) {
     const Drawn wanted{content.bodies_revision, content.lines_revision, content.space,
                        content.world,           content.theme,          content.shows_world,
@@ -142,19 +142,19 @@ class SceneView::Painter {
     if (lines) setLines(scene_, content);
     setSurroundings(scene_, content);
     bounds_ = boundsOf(scene_.boxes, content.space.toView(content.world));
-    if (!splatter_) upload(bodies, lines);
+    if (!rasterizer_) upload(bodies, lines);
     drawn_ = wanted;
     return true;
   }
 
-  /// Draws what was last taken over, and leaves `target` bound.
+  /// Draws the last updated content, and leaves `target` bound.
   void draw(const Viewpoint& viewpoint, const Framebuffer& target) {
     gl_->Disable(GL_SCISSOR_TEST);
     gl_->Disable(GL_CULL_FACE);
     gl_->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    if (splatter_) {
-      splatter_->draw(scene_, viewpoint);
-      target.write(splatter_->colours());
+    if (rasterizer_) {
+      rasterizer_->draw(scene_, viewpoint);
+      target.write(rasterizer_->colours());
       target.bind();
     } else {
       target.bind();
@@ -163,9 +163,9 @@ class SceneView::Painter {
     if (drawn_->shows_axes) drawAxes(viewpoint);
   }
 
-  /// Bounds of bodies and world, in view space.
+  /// The bounds of bodies and world, in view space.
   [[nodiscard]] const Aabb& bounds() const { return bounds_; }
-  [[nodiscard]] bool isSplatting() const { return splatter_ != nullptr; }
+  [[nodiscard]] bool isSplatting() const { return rasterizer_ != nullptr; }
 
  private:
   /// Everything that changes a picture, except its size and the camera.
@@ -215,7 +215,7 @@ class SceneView::Painter {
 
     gl_->DepthMask(GL_FALSE);
     gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // the picture stays opaque
-    // At the far end of the depth range: everything drawn so far is in front of it.
+    // At the far end of the depth range, behind everything drawn so far.
     gl_->DepthRange(1, 1);
     boxes_.draw(uploaded_.floor, viewpoint);
     gl_->DepthRange(0, 1);
@@ -257,13 +257,13 @@ class SceneView::Painter {
 
   const Gl* gl_;
   ThreadTeam team_;
-  std::unique_ptr<SoftwareRasterizer> splatter_;  ///< null: OpenGL draws the scene
+  std::unique_ptr<SoftwareRasterizer> rasterizer_;  ///< null: OpenGL draws the scene
   PrimitiveRenderer boxes_;
   PrimitiveRenderer lines_;
 
   std::optional<Drawn> drawn_;
   ScenePrimitives scene_;
-  Uploaded uploaded_;  ///< empty if the splatter draws
+  Uploaded uploaded_;  ///< empty with the software renderer
   Aabb bounds_;
 };
 
@@ -282,7 +282,7 @@ void SceneView::resize(int width, int height) {
   if (framebuffer_ && framebuffer_->width() == width && framebuffer_->height() == height) return;
   const TargetGuard guard(*gl_);
   is_up_to_date_ = false;
-  framebuffer_.reset();  // first: both might not fit
+  framebuffer_.reset();  // first, because both might not fit
   framebuffer_ = std::make_unique<Framebuffer>(*gl_, width, height, samples_);
 }
 

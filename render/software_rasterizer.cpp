@@ -1,7 +1,7 @@
 // Splatting: each box is projected to a rectangle of pixels. The rays through these pixels are
-// tested against the box's slabs, eight at a time; the nearest hit is kept. When all boxes are done
-// each pixel is coloured once, and lines are blended in, tested against the depths of the boxes.
-// The picture is cut into bands of rows, which the workers take one after another.
+// tested against the box's slabs, eight at a time, and the nearest hit is stored. After all boxes,
+// each pixel is shaded once, and lines are blended, tested against the depths of the boxes. The
+// picture is divided into bands of rows, which workers process dynamically.
 // O(boxes + lines + pixels tested).
 #include "software_rasterizer.h"
 
@@ -17,7 +17,7 @@ namespace {
 static_assert(sizeof(SplatBox) == sizeof(Primitive));
 static_assert(sizeof(SplatLine) == sizeof(Primitive));
 
-/// Primitives as the kernels read them.
+/// Primitives in the kernels' type.
 template <class Item>
 std::span<const Item> itemsOf(std::span<const Primitive> primitives) {
   return {reinterpret_cast<const Item*>(primitives.data()), primitives.size()};
@@ -69,7 +69,7 @@ void SoftwareRasterizer::draw(const ScenePrimitives& scene, const Viewpoint& vie
   const SplatView view = splatView(viewpoint);
   const std::uint32_t background = pixelOf(viewpoint.haze);
   const int bands = (view.height + BandLists::kRows - 1) / BandLists::kRows;
-  take(scene, bands);
+  setPrimitives(scene, bands);
   team_->run([&](int worker) { project(view, worker); });
   colours_.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   next_band_ = 0;
@@ -80,7 +80,7 @@ void SoftwareRasterizer::draw(const ScenePrimitives& scene, const Viewpoint& vie
   });
 }
 
-void SoftwareRasterizer::take(const ScenePrimitives& scene, int bands) {
+void SoftwareRasterizer::setPrimitives(const ScenePrimitives& scene, int bands) {
   const auto take_boxes = [&](BoxLayer& layer, std::span<const Primitive> boxes) {
     layer.boxes = itemsOf<SplatBox>(boxes);
     layer.lists.reset(boxes.size(), bands, team_->size());

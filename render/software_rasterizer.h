@@ -1,5 +1,5 @@
-// The software renderer. Without a GPU it draws many small boxes and lines several times as fast as
-// an OpenGL that runs on the processor.
+// The software renderer. It draws many small boxes and lines several times as fast as OpenGL on the
+// CPU.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace broadmark {
 
-/// Sorts what is drawn into bands of rows, so that workers can draw bands at the same time: for
-/// each band the positions of the items that touch it, ascending for any number of workers.
+/// Sorts items into bands of rows, so that workers can draw bands in parallel. Stores the indices
+/// of the items that overlap each band, in ascending order for any number of workers.
 class BandLists {
  public:
-  /// Small enough that a band stays in a core's cache, large enough that few items lie in two.
+  /// Small enough for a core's cache, large enough for few items to overlap two bands.
   static constexpr int kRows = 32;
 
   void reset(std::size_t items, int bands, int workers) {
@@ -32,12 +32,12 @@ class BandLists {
     }
   }
 
-  /// A worker's share of the items: project(first, last, rectangles) fills their rectangles.
+  /// Sorts a worker's share of the items; project(first, last, rectangles) fills their rectangles.
   template <class Project>
   void fill(int worker, const Project& project) {
     auto& by_band = lists_[static_cast<std::size_t>(worker)];
     const auto [begin, end] = share(rectangles_.size(), static_cast<int>(lists_.size()), worker);
-    // In pieces: the rectangles are still in the cache when they are sorted into bands.
+    // In pieces, so that the rectangles are still in the cache when they are sorted into bands.
     constexpr std::size_t kPiece = 1024;
     for (std::size_t first = begin; first < end; first += kPiece) {
       const std::size_t last = std::min(first + kPiece, end);
@@ -52,11 +52,11 @@ class BandLists {
     }
   }
 
-  /// Calls draw(items, rectangles) for some of a band's items after the others.
-  template <class Draw>
-  void forEach(int band, const Draw& draw) const {
+  /// Calls visit(items, rectangles) for each part of a band's items, in order.
+  template <class Visit>
+  void forEach(int band, const Visit& visit) const {
     for (const auto& by_band : lists_) {
-      draw(std::span(by_band[static_cast<std::size_t>(band)]), rectangles_.data());
+      visit(std::span(by_band[static_cast<std::size_t>(band)]), rectangles_.data());
     }
   }
 
@@ -65,14 +65,14 @@ class BandLists {
   std::vector<std::vector<std::vector<std::uint32_t>>> lists_;  ///< by worker and band
 };
 
-/// Draws a scene on the processor; it looks as if OpenGL had drawn it. The picture stays until the
-/// next draw(). It is the same for every number of threads and every instruction set.
+/// Draws a scene on the CPU, with the appearance of the OpenGL renderer. The picture is valid until
+/// the next draw(), and is the same for every number of threads and every instruction set.
 class SoftwareRasterizer {
  public:
-  /// `team` does the drawing and must outlive this.
+  /// `team` must outlive this object.
   explicit SoftwareRasterizer(ThreadTeam& team, Isa isa = bestIsa());
 
-  /// On a background of the viewpoint's haze. Each side of the picture: 1 to 16384 pixels.
+  /// The background is the viewpoint's haze. Each side of the picture has 1 to 16384 pixels.
   void draw(const ScenePrimitives& scene, const Viewpoint& viewpoint);
 
   /// RGBA8 in memory order, rows from bottom to top as in OpenGL.
@@ -96,7 +96,7 @@ class SoftwareRasterizer {
     std::vector<std::uint32_t> foremost;
     std::vector<std::uint32_t> colours;
   };
-  void take(const ScenePrimitives& scene, int bands);
+  void setPrimitives(const ScenePrimitives& scene, int bands);
   void project(const SplatView& view, int worker);
   void drawBand(const SplatView& view, std::uint32_t background, int number, Worker& worker);
   void drawBoxes(const SplatView& view, const BoxLayer& layer, int number,

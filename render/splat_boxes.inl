@@ -1,13 +1,13 @@
-// Boxes: projected to rectangles of pixels, of which each keeps the nearest box, then shaded.
+// Boxes: projected to rectangles of pixels, depth-tested per pixel, then shaded.
 
-/// Corners of a box relative to the eye; Number is float, or Floats for a box per lane.
+/// The corners of a box relative to the eye; Number is float, or Floats for a box per lane.
 template <class Number>
 struct Corners {
   Number low[3];
   Number high[3];
 };
 
-/// Makes every side at least that many pixels long.
+/// Enlarges every side to at least this number of pixels.
 template <class Number>
 inline void enlarge(Corners<Number>& box, Number pixels, const SplatView& view) {
   Number centre[3];
@@ -31,7 +31,7 @@ inline Corners<float> cornersOf(const SplatView& view, const SplatBox& box) {
   return corners;
 }
 
-/// Of the boxes box(lane), which returns a reference.
+/// The corners of the boxes box(lane), which returns a reference.
 template <class BoxOf>
 inline Corners<Floats> cornersOf(const SplatView& view, const BoxOf& box) {
   Corners<Floats> corners;
@@ -88,7 +88,7 @@ void projectBoxes(const SplatView& view, const SplatBox* boxes, std::size_t begi
       nearest = smaller(nearest, corner_depth);
       farthest = larger(farthest, corner_depth);
     }
-    // A box across the near plane may cover any pixel; a box wholly nearer covers none.
+    // A box that intersects the near plane may cover any pixel; a nearer box covers no pixel.
     const Ints crosses = nearest < view.near;
     const Ints is_seen = (farthest >= view.near) & (nearest <= view.far);
     const Extent columns =
@@ -114,7 +114,7 @@ inline Rays raysFrom(const SplatView& view, int x, int y) {
   return rays;
 }
 
-/// The least depth of a box.
+/// The minimum depth of a box.
 inline float nearestOf(const SplatView& view, const Corners<float>& box) {
   float nearest = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -133,11 +133,11 @@ void splatBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectang
     const Rows rows = rowsIn(band, rectangle);
     for (int y = rows.begin; y < rows.end; ++y) {
       const int row = (y - band.begin) * band.stride;
-      // Rays beside the rectangle miss the box: the last eight pixels may go beyond its border.
+      // Rays beside the rectangle miss the box, so the last eight pixels may cross its border.
       for (int x = rectangle.left; x <= rectangle.right; x += kLanes) {
         float* depths = band.depths + row + x;
         const Floats before = load<Floats>(depths);
-        // In a dense scene most boxes are hidden by those drawn before them.
+        // In a dense scene, most boxes are hidden by boxes drawn before.
         if (!any(before > nearest)) continue;
         const Rays rays = raysFrom(view, x, y);
         Floats enter;
@@ -160,18 +160,18 @@ void splatBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectang
   }
 }
 
-/// x, y or z by the axis of each lane.
+/// x, y or z, selected by the axis of each lane.
 inline Floats chosen(Ints is_x, Ints is_y, Floats x, Floats y, Floats z) {
   return is_x ? x : (is_y ? y : z);
 }
 
-/// The colours of eight pixels, covered by the boxes box(lane) at the given depths.
+/// The colours of eight pixels covered by the boxes box(lane) at these depths.
 template <class BoxOf>
 inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays, Floats depth) {
   const Corners<Floats> box = cornersOf(view, box_of);
   const Floats* ray = rays.direction;
 
-  // The ray enters the box through the slab that it reaches last.
+  // The ray enters the box through the slab with the greatest entry depth.
   Floats enter[3];
   for (int axis = 0; axis < 3; ++axis) {
     const Floats inverse = 1.0F / ray[axis];
@@ -180,7 +180,7 @@ inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays,
   const Ints is_x = (enter[0] >= enter[1]) & (enter[0] >= enter[2]);
   const Ints is_y = ~is_x & (enter[1] >= enter[2]);
 
-  // Of the point hit, by axis: its place between the two faces, and the change within a pixel.
+  // By axis: the relative position of the hit point between the faces, and its change per pixel.
   Floats part[3];
   Floats change[3];
   const Floats along = chosen(is_x, is_y, ray[0], ray[1], ray[2]);
@@ -201,7 +201,7 @@ inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays,
   const Floats pixel_u = chosen(is_x, is_y, change[2], change[0], change[0]);
   const Floats pixel_v = chosen(is_x, is_y, change[1], change[2], change[1]);
 
-  // From here on as in box.frag.
+  // The rest is the same as in box.frag.
   const Floats from_edge = smaller(smaller(u, 1.0F - u) / pixel_u, smaller(v, 1.0F - v) / pixel_v);
   Floats edge = 1.0F - smoothstep(broadcast(view.edge_pixels - 0.5F),
                                   broadcast(view.edge_pixels + 0.7F), from_edge);
@@ -233,7 +233,7 @@ void shadeBoxes(const SplatView& view, const SplatBox* boxes, const SplatBand& b
       float* depths = band.depths + row + x;
       std::uint32_t* colours = band.colours + row + x;
       const std::uint32_t* which = band.boxes + row + x;
-      // Any box among the lanes stands in for the lanes without one.
+      // Lanes without a box use the box of another lane.
       std::uint32_t some = kNoBox;
       for (int lane = 0; lane < kLanes; ++lane) some = which[lane] != kNoBox ? which[lane] : some;
       if (some == kNoBox) {

@@ -5,13 +5,13 @@
 namespace broadmark {
 namespace {
 
-// Without a target the compiler splits the vectors for the instruction set of the build.
+// Without a target, the compiler splits the vectors for the build's instruction set.
 namespace baseline {
 #include "splat_kernels.inl"
 }  // namespace baseline
 
-// The target is set around these functions only. A whole file compiled with -mavx2 would contain
-// AVX2 copies of shared inline functions, and the linker might keep one of them for the program.
+// The target applies only to these functions. A whole file compiled with -mavx2 would contain AVX2
+// copies of shared inline functions, and the linker might choose them for the whole program.
 #if defined(__x86_64__)
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)

@@ -1,27 +1,27 @@
-// Lines: projected to strips of even width, as in line.vert, then blended into the picture where
-// they lie before the boxes or where they lie behind them, as in line.frag.
+// Lines: projected to strips of constant width, as in line.vert, then blended into the picture in
+// front of the boxes or behind them, as in line.frag.
 
-/// The two ends of eight lines, by coordinate.
+/// The ends of eight lines, by coordinate.
 struct Ends {
   Floats at[3][2];
 };
 
-/// Moves an end that lies below a limit to where the line crosses it. `height`: of the ends, above
-/// the limit. Returns the lines of which something is left.
+/// Clips lines at a limit. `height`: of the ends above the limit. Returns a mask of the lines that
+/// are partly above it.
 inline Ints cutBelow(const Floats (&height)[2], Ends& ends) {
   for (int end = 0; end < 2; ++end) {
     const int other = 1 - end;
     const Floats part = height[end] / (height[end] - height[other]);
     for (auto& at : ends.at) {
-      // Where both ends are below, the values mean nothing; the line is not drawn.
+      // If both ends are below, the values are undefined; the line is not drawn.
       at[end] = height[end] < 0.0F ? at[end] + (at[other] - at[end]) * part : at[end];
     }
   }
   return (height[0] >= 0.0F) | (height[1] >= 0.0F);
 }
 
-/// Relative to the eye: x and y in pixels times depth, and the depth. Returns the lines that reach
-/// beyond the near plane, of which the rest is cut off.
+/// Computes x and y in pixels times depth, and the depth, relative to the eye. Clips the lines at
+/// the near plane, and returns a mask of the lines that are partly behind it.
 inline Ints viewedEnds(const SplatView& view, const Floats (&points)[3][2], Ends& ends) {
   const float* rows[3] = {view.column, view.row, view.forward};
   for (int i = 0; i < 3; ++i) {
@@ -34,8 +34,8 @@ inline Ints viewedEnds(const SplatView& view, const Floats (&points)[3][2], Ends
   return cutBelow(height, ends);
 }
 
-/// Cuts off what lies farther than `margin` pixels beside the picture, so that the numbers stay
-/// small. Returns the lines of which something is left.
+/// Clips lines at `margin` pixels beside the picture, to keep the numbers small. Returns a mask of
+/// the lines that are partly inside.
 inline Ints cutBeside(const SplatView& view, Floats margin, Ends& ends) {
   Ints is_left = Ints{} == 0;
   const int sizes[2] = {view.width, view.height};
@@ -72,7 +72,7 @@ void projectLines(const SplatView& view, const SplatLine* lines, std::size_t beg
       ends.at[2][side] = at_far_end ? broadcast(1) : windowDepth(view, depth);
     }
     const Floats half_width = 0.5F * gather([&](int lane) { return line(lane).width; });
-    const Floats reach = half_width + 0.5F;  // half a pixel for the smooth border
+    const Floats reach = half_width + 0.5F;  // plus half a pixel for the smooth border
     is_seen &= cutBeside(view, reach + 1.0F, ends);
 
     const auto& [x, y, z] = ends.at;
@@ -98,25 +98,25 @@ void projectLines(const SplatView& view, const SplatLine* lines, std::size_t beg
   }
 }
 
-/// The numbers of a row's pixels in which a strip may lie.
+/// The range of a row's pixels that a strip may cover.
 struct Span {
   float left;
   float right;
 
-  /// Keeps what is no farther than `reach` from `middle`.
+  /// Clips the span to a distance of `reach` from `middle`.
   void keepAround(float middle, float reach) {
     left = larger(left, middle - reach);
     right = smaller(right, middle + reach);
   }
 };
 
-/// `from_start`: of the row's middle, upwards from the strip's start.
+/// `from_start`: the row's middle relative to the strip's start, upwards.
 inline Span spanOf(const SplatStrip& strip, const PixelRectangle& rectangle, float from_start) {
-  // A strip as good as level or upright is bounded by its rectangle.
+  // A nearly horizontal or vertical strip is bounded by its rectangle.
   constexpr float kSlope = 1e-3F;
   const auto [x, y] = strip.direction;
   Span span{static_cast<float>(rectangle.left), static_cast<float>(rectangle.right)};
-  const float origin = strip.start[0] - 0.5F;  // numbers of pixels, whose middles are half farther
+  const float origin = strip.start[0] - 0.5F;  // in pixel indices; middles of pixels are at + 0.5
   const float slack = 0.05F;
   if (y > kSlope || y < -kSlope) {
     const float across = (strip.half_width + 0.5F) / (y > 0 ? y : -y);

@@ -1,4 +1,4 @@
-// Eight numbers at a time, in the notation of the compiler, and what the kernels do with them.
+// Vectors of eight numbers with the compiler's vector extension, and functions on them.
 
 constexpr int kLanes = 8;
 using Floats = float __attribute__((vector_size(4 * kLanes)));
@@ -24,13 +24,13 @@ inline bool any(Ints mask) {
   return ((halves[0] | halves[1]) | (halves[2] | halves[3])) != 0;
 }
 
-/// As in GLSL.
+/// GLSL's smoothstep.
 inline Floats smoothstep(Floats low, Floats high, Floats value) {
   const Floats t = clamped((value - low) / (high - low), 0, 1);
   return t * t * (3.0F - 2.0F * t);
 }
 
-/// Eight values from or to any address.
+/// Loads or stores eight values at an unaligned address.
 template <class Vector>
 inline Vector load(const void* from) {
   Vector vector;
@@ -42,32 +42,32 @@ inline void store(void* to, Vector vector) {
   __builtin_memcpy(to, &vector, sizeof vector);
 }
 
-/// get(lane) of each lane.
+/// The vector of get(lane) for each lane.
 template <class Get>
 inline Floats gather(const Get& get) {
   return Floats{get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7)};
 }
 
-/// The item of a lane; lanes beyond `count` repeat the first.
+/// The item of a lane; lanes beyond `count` repeat the first item.
 template <class Item>
 inline const Item& itemOf(const Item* items, std::size_t count, int lane) {
   const auto offset = static_cast<std::size_t>(lane);
   return items[offset < count ? offset : 0];
 }
 
-/// Red, green or blue (0, 1, 2) of colours 0xRRGGBB, 0 to 255.
+/// The channel red, green or blue (0, 1, 2) of colours 0xRRGGBB, from 0 to 255.
 inline Floats channelOf(Ints rgb, int channel) {
   return __builtin_convertvector((rgb >> (16 - 8 * channel)) & 0xFF, Floats);
 }
 
-/// As in OpenGL's depth buffer, 0 to 1.
+/// The depth in OpenGL's depth buffer, from 0 to 1.
 inline Floats windowDepth(const SplatView& view, Floats depth) {
   const float range = view.far - view.near;
   return clamped(view.far / range - view.far * view.near / range / depth, 0, 1);
 }
 
-/// The first and the last of `count` pixels that something covers: those whose middles lie between
-/// low and high, with a little slack for rounding.
+/// The first and the last covered pixel of `count`: pixels with a middle between `low` and `high`,
+/// with a little slack for rounding.
 struct Extent {
   Ints first;
   Ints last;
@@ -79,7 +79,7 @@ inline Extent pixelExtent(Floats low, Floats high, int count) {
           __builtin_convertvector(clamped(high - (0.5F - kSlack), -1, limit - 1) + 1.0F, Ints) - 1};
 }
 
-/// The pixels of a picture that lie in both extents, for each of the first `count` lanes.
+/// Stores the rectangles of two extents for the first `count` lanes.
 inline void storeRectangles(const Extent& columns, const Extent& rows, Ints is_seen,
                             std::size_t count, PixelRectangle* rectangles) {
   for (std::size_t lane = 0; lane < count; ++lane) {

@@ -10,7 +10,7 @@
 namespace broadmark {
 namespace {
 
-/// OpenGL's way to say so: an offset in place of a pointer.
+/// An offset as a pointer, as required by OpenGL.
 const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr)
 }

@@ -102,7 +102,7 @@ void Window::installCallbacks() {
 }
 
 void Window::pushMove(double x, double y) {
-  // GLFW gives screen units, which need not be pixels.
+  // GLFW reports screen units, which may differ from pixels.
   int units = 1;
   glfwGetWindowSize(window_, &units, nullptr);
   const double pixels_per_unit = static_cast<double>(width()) / std::max(units, 1);

@@ -1,4 +1,4 @@
-// Recordings of simulations, each with a sidecar that says how it was made: a .json beside it.
+// Recordings of simulations, each with a .json sidecar that describes its origin.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,13 +17,13 @@ namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
-using Sidecar = nlohmann::json;  // unlike Json equal whatever the order of keys
+using Sidecar = nlohmann::json;  // unlike Json, compares regardless of key order
 
 constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 
 fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
-/// All parameters but for the path of an input, which says nothing elsewhere.
+/// All parameters without the path of an input, which is meaningless elsewhere.
 Json parametersWithoutPath(Simulation& simulation) {
   Json json = sceneParametersJson(simulation, kBakeSchema);
   json["parameters"].erase("input");
@@ -35,7 +35,7 @@ RecordingOrigin originOf(Simulation& simulation) {
           .scene_parameters = formatJson(parametersWithoutPath(simulation))};
 }
 
-/// The sidecar of a recording with this hash. It names an input by its contents, not by its path.
+/// The sidecar of a recording with this hash. Identifies an input by its contents, not by its path.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
   Json json = parametersWithoutPath(simulation);
   if (const std::string input = simulation.inputHash(); !input.empty()) json["input_hash"] = input;
@@ -58,8 +58,8 @@ Sidecar sidecarOf(const fs::path& recording) {
   return is_sidecar ? json : Sidecar::object();
 }
 
-/// Writes one recording, of the kind that the path's extension names: positions and rotations, or
-/// boxes. Leaves no file unless it is finished.
+/// Writes one recording in the format of the path's extension: poses or boxes. Leaves no file
+/// unless finished.
 class Recorder {
  public:
   Recorder(const fs::path& path, Simulation& simulation) {
@@ -76,7 +76,7 @@ class Recorder {
     }
   }
 
-  /// Writes the frame that the simulation has just handed out. The initial pose comes first.
+  /// Writes the simulation's latest frame. Starts with the initial pose.
   void record(const Frame& frame, Simulation& simulation) {
     if (boxes_) {
       boxes_->write(frame);
@@ -86,7 +86,7 @@ class Recorder {
       poses_->write(simulation.poses());
     }
   }
-  /// Makes the recording whole. Returns its hash.
+  /// Completes the recording. Returns its hash.
   std::string finish() { return boxes_ ? boxes_->finish() : poses_->finish(); }
 
  private:

@@ -1,5 +1,5 @@
-// The lists of CMakeLists.txt in code: making entries, and finding one by its id. Every entry has a
-// `listing` with an `id`.
+// Helpers for the lists of CMakeLists.txt: making entries, and finding an entry by its id. Every
+// entry has a `listing` with an `id`.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 
 namespace broadmark::scenes {
 
-/// A new Kind, as its Interface: the `create` of an entry.
-template <class Interface, class Kind, class... Arguments>
+/// Makes an Implementation as its Interface: the `create` of an entry.
+template <class Interface, class Implementation, class... Arguments>
 std::unique_ptr<Interface> makeAs(Arguments... arguments) {
-  return std::make_unique<Kind>(std::forward<Arguments>(arguments)...);
+  return std::make_unique<Implementation>(std::forward<Arguments>(arguments)...);
 }
 
 template <class Entry>

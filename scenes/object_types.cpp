@@ -1,4 +1,4 @@
-// The object types: what the bodies of a scene look like.
+// The object types: shapes for the bodies of a scene.
 
 #include <array>
 
@@ -22,7 +22,7 @@ using Edges = std::array<double, 3>;
 /// 80 bodies the first 19 are these; the others have random edges.
 constexpr std::size_t kPeriod = 80;
 
-/// The first bodies of every period: from the end of the row above to `end`, which is not included.
+/// The first bodies of every period: from the end of the row above to `end`, exclusive.
 constexpr struct {
   std::size_t end;
   Edges edges;

@@ -20,9 +20,8 @@ std::unique_ptr<PhysicsEngine> engineOf(const std::string& id, const PhysicsSett
 
 using EngineMaker = std::function<std::unique_ptr<PhysicsEngine>()>;
 
-/// An engine for each world, made when its first body is added. One engine for all would have to
-/// look at every pair of bodies at the same place, only to find that nearly all are in different
-/// worlds.
+/// An engine for each world, made when its first body is added. A single engine would have to test
+/// every pair of bodies at the same place, although nearly all are in different worlds.
 class WorldsEngine final : public PhysicsEngine {
  public:
   explicit WorldsEngine(EngineMaker make_engine) : make_engine_(std::move(make_engine)) {}
@@ -102,7 +101,7 @@ std::unique_ptr<PhysicsEngine> ChosenEngine::create(const std::string& id,
 }
 
 const SceneInfo& PhysicsSimulation::scene() const {
-  // Until the first frame the parameters may still change.
+  // The parameters may change until the first frame.
   if (!engine_) info_ = describe();
   return info_;
 }
@@ -120,14 +119,14 @@ Frame PhysicsSimulation::rewind() {
 std::optional<Frame> PhysicsSimulation::next() {
   if (!engine_) rewind();
   if (index_ == info_.frames) return {};
-  // Not before: until now the bodies had to be those of the frame handed out last.
+  // Deferred to here: until now the bodies had to match the last frame.
   if (index_ > 0) act(index_);
   ++index_;
   if (!engine_->allAsleep()) {
     engine_->step();
     freezeEscapees();
   }
-  comeAndGo(index_);
+  updatePresence(index_);
   return bodies_->record(index_);
 }
 

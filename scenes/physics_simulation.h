@@ -1,4 +1,4 @@
-// What all simulations by a physics engine share: built-in and authored scenes.
+// Shared base of simulations with a physics engine: built-in and authored scenes.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace broadmark::scenes {
 
-/// Keeps the parameters of the physics engine that is chosen, and forgets them when another one is.
+/// Retains the parameters of the chosen physics engine until another is chosen.
 class ChosenEngine {
  public:
   /// The parameters of the engine `id`: an engine without bodies.
@@ -28,8 +28,8 @@ class ChosenEngine {
   std::unique_ptr<PhysicsEngine> engine_;
 };
 
-/// Drives a physics engine, frame by frame, within six walls. A body whose centre leaves the world
-/// is frozen.
+/// Drives a physics engine, frame by frame, within six walls. Freezes bodies with their centre
+/// outside the world.
 class PhysicsSimulation : public Simulation, public SceneSource {
  public:
   using Simulation::Simulation;
@@ -42,20 +42,20 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   [[nodiscard]] AuthoredScene authoredScene() override;
 
  protected:
-  /// The scene that the present parameters describe.
+  /// The scene for the present parameters.
   [[nodiscard]] virtual SceneInfo describe() const = 0;
   [[nodiscard]] virtual std::unique_ptr<PhysicsEngine> createEngine() = 0;
-  /// Which layers push each other.
+  /// The layers that push each other.
   [[nodiscard]] virtual LayerMatrix pushing(const SceneInfo&) const = 0;
   /// Adds the bodies of the initial pose to the engine, which has only walls yet, and sets the
   /// forces.
   virtual void start() = 0;
-  /// Called before frame `frame`, 1 or later, is recorded: bodies come and go.
-  virtual void comeAndGo(std::uint32_t /*frame*/) {}
-  /// Called after frame `frame`, 1 or later, when the next one is asked for.
+  /// Called before frame `frame`, 1 or later, is recorded: adds and removes bodies.
+  virtual void updatePresence(std::uint32_t /*frame*/) {}
+  /// Called after frame `frame`, 1 or later, when the next one is requested.
   virtual void act(std::uint32_t /*frame*/) {}
 
-  // Both only once the first frame is asked for.
+  // Both only after the first frame was requested.
   [[nodiscard]] PhysicsEngine& engine() { return *engine_; }
   [[nodiscard]] Bodies& bodies() { return *bodies_; }
 

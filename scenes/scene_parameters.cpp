@@ -14,7 +14,7 @@
 namespace broadmark {
 namespace {
 
-/// A number as text; any value as a short text for messages.
+/// A number as text; any other value as a short text for messages.
 std::string textOf(const Json& value) {
   if (value.is_array()) return "[…]";
   return value.is_object() ? "{…}" : compactJson(value);
@@ -36,7 +36,7 @@ void setFromJson(const Parameter& parameter, const Json& value) {
   } else if (std::holds_alternative<Choice*>(parameter.value) && value.is_string()) {
     setParameter(parameter, onOneLine(value.get<std::string>()));
   } else {
-    // A JSON text keeps its quotes here, so that it is not taken for a number.
+    // A JSON string keeps its quotes here, so that it is not parsed as a number.
     setParameter(parameter, textOf(value));
   }
 }
@@ -55,7 +55,7 @@ void requireKnown(const std::string& kind, const std::string& name,
   }
 }
 
-/// Messages do not name the file: the caller adds it.
+/// Messages omit the file: the caller adds it.
 std::unique_ptr<Simulation> simulationFrom(const Json& json) {
   const auto text = [&](const char* key) {
     const auto field = json.find(key);
@@ -75,7 +75,7 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
   if (parameters != json.end() && !parameters->is_object()) {
     throw InputError("parameters: an object is expected");
   }
-  std::string engine;  // read first: it decides which parameters there are
+  std::string engine;  // read first: it determines the other parameters
   if (parameters != json.end() && parameters->contains("engine")) {
     const Json& value = parameters->at("engine");
     engine = onOneLine(value.is_string() ? value.get<std::string>() : textOf(value));

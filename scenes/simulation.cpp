@@ -76,7 +76,7 @@ class BuiltinSimulation final : public PhysicsSimulation {
   Random random_{0};
 };
 
-/// Throws InputError unless there is an engine of this id, which may replay recordings.
+/// Throws InputError unless an engine, replay engines included, has this id.
 void requireEngine(const std::string& id) {
   std::vector<std::string> known;
   for (const EngineListing& listing : availableEngines()) known.push_back(listing.id);
@@ -85,8 +85,8 @@ void requireEngine(const std::string& id) {
   }
 }
 
-/// A replay by the engine of this id; null if it is not one that replays recordings. `scene` may be
-/// null: none in particular.
+/// A replay by the engine of this id; null if it is not a replay engine. `scene` may be null: no
+/// particular scene.
 std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneEntry* scene) {
   for (const ReplayEntry& entry : replayEntries()) {
     if (entry.listing.id != engine) continue;

@@ -77,7 +77,7 @@ class Tree {
 
  private:
   enum class Side { left, right, root };
-  /// What a traversal knows of a node, in addition to the node.
+  /// The state of a traversal at a node, in addition to the node.
   struct NodeContext {
     std::size_t begin = 0;  ///< of the node's slice
     Side side = Side::root;

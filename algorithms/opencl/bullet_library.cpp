@@ -11,7 +11,7 @@
 
 #include "broadmark/error.h"
 
-// Exported by the library, declared in none of its headers.
+// Exported by the library, but missing in its headers.
 // NOLINTBEGIN(readability-identifier-naming)
 int b3OpenCLUtils_clewInit();
 extern bool gDebugSkipLoadingBinary;
@@ -26,7 +26,7 @@ extern cl_kernel m_sap2Kernel;
 namespace broadmark::opencl {
 namespace {
 
-/// Bullet reports errors by a callback only: the last one on this thread.
+/// Bullet reports errors only by a callback: the last one on this thread.
 thread_local std::string last_error;
 
 constexpr std::array kGlobalKernels = {&kCalcHashAABB,         &kClearCellStart,   &kFindCellStart,
@@ -36,9 +36,9 @@ constexpr std::array kGlobalKernels = {&kCalcHashAABB,         &kClearCellStart,
 
 void loadBulletLibrary() {
   static const int status = [] {
-    gDebugSkipLoadingBinary = true;  // or it writes a cache of its own beside the program
+    gDebugSkipLoadingBinary = true;  // otherwise it writes a cache beside the program
     b3OpenCLUtils_setCachePath("/dev/null");
-    // Or PoCL's compiler tells on standard error how many warnings Bullet's kernels have.
+    // Otherwise PoCL prints the number of warnings in Bullet's kernels on standard error.
     ::setenv("POCL_EXTRA_BUILD_FLAGS", "-w", 0);
     const auto ignore = [](const char*) {};
     b3SetCustomPrintfFunc(ignore);

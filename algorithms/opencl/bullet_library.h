@@ -1,9 +1,9 @@
-// Bullet 3's OpenCL library: loading it, its errors, and its grid with kernels of its own.
+// Bullet 3's OpenCL library: loading, errors, and its grid with kernels per instance.
 //
 // The grid's six kernels are global variables of the library: its constructor overwrites them, its
-// search uses them, and its destructor releases what they hold by then. So each grid here keeps its
-// own six and puts them in place. Nothing else that Bullet's three broad phases use is process-wide
-// but what is set once: the loaded OpenCL and the callbacks for messages.
+// search uses them, and its destructor releases their present values. So each grid here stores its
+// own six and installs them. The only other process-wide state of Bullet's three broad phases is
+// set once: the loaded OpenCL and the message callbacks.
 #pragma once
 
 #include <Bullet3OpenCL/BroadphaseCollision/b3GpuGridBroadphase.h>
@@ -12,15 +12,15 @@
 
 namespace broadmark::opencl {
 
-/// Loads the library's OpenCL and keeps it quiet, once for the process. Throws UnsupportedError.
+/// Loads the library's OpenCL and silences it, once per process. Throws UnsupportedError.
 void loadBulletLibrary();
 
-/// Throws the last error that Bullet has reported on this thread, if there is one, and drops it.
+/// Throws Bullet's last error on this thread, if any, and clears it.
 void requireNoBulletError();
 void dropBulletError();
 
-/// The library's grid with kernels of its own, and with two settings that are private in the
-/// library. Only one of its calls, of all instances, may run at a time.
+/// The library's grid with kernels per instance, and with two settings that are private in the
+/// library. Calls of all instances must be serialised.
 class BulletGrid final : public b3GpuGridBroadphase {
  public:
   BulletGrid(cl_context context, cl_device_id device, cl_command_queue queue);
@@ -34,7 +34,7 @@ class BulletGrid final : public b3GpuGridBroadphase {
     b3GpuGridBroadphase::calculateOverlappingPairs(max_pairs);
   }
 
-  /// Cells of that edge, which hold any number of bodies.
+  /// Sets the cell edge; cells hold any number of bodies.
   void setCellSize(float size);
 
  private:

@@ -1,4 +1,4 @@
-// Listing algorithms that run on a compute device.
+// Registry entries of algorithms on a compute device.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace broadmark::opencl {
 
-/// Kernels count sixteen floats for each body with 32 bits.
+/// Kernels index sixteen floats for each body with 32 bits.
 constexpr std::uint64_t kMaxObjectCount = std::uint64_t{1} << 28;
 
 /// The entry of an algorithm on a device. All are linear in space, and drivers allocate.

@@ -10,12 +10,12 @@
 namespace broadmark::opencl {
 namespace {
 
-constexpr std::size_t kStrips = 256;  ///< parts in which boxes are summarised
+constexpr std::size_t kStrips = 256;  ///< parts for summarising the boxes
 constexpr std::size_t kSumsPerStrip = 5;
-/// As common.cl has it: kernels stop counting about here.
+/// As in common.cl: kernels stop counting about here.
 constexpr cl_uint kMaxPairs = 0x80000000;
 
-/// A corner or a sum, as kernels write it.
+/// A corner or a sum, as written by kernels.
 using Float4 = std::array<float, 4>;
 
 }  // namespace
@@ -85,7 +85,7 @@ void DeviceBroadPhase::searchOverlaps() {
   cl_uint found = searchOnce();
   while (found > sink_.capacity) {
     if (found >= kMaxPairs) throw UnsupportedError("more than 2^31 overlapping pairs");
-    // A little more, or every frame of a growing heap would need a second search.
+    // With a margin, as otherwise every frame of a growing heap would need a second search.
     sink_.capacity = found + found / 4 + 1024;
     sink_.pairs = context_->buffer(std::size_t{sink_.capacity} * sizeof(Pair));
     found = searchOnce();

@@ -1,5 +1,5 @@
-// What our own algorithms on a compute device share: boxes go up, pairs come down, and both have
-// buffers there that stay and grow.
+// Shared base of the algorithms on a compute device: uploads boxes, downloads pairs, and retains
+// growing buffers for both.
 #pragma once
 
 #include <optional>
@@ -18,19 +18,18 @@ struct FrameSummary {
   std::array<double, 3> variance{};  ///< of the centres, per axis
 };
 
-/// Where a searching kernel puts pairs: its last three arguments.
+/// The output of a search kernel: its last three arguments.
 struct PairSink {
   cl::Buffer pairs;
   cl::Buffer count;
   cl_uint capacity = 0;
 };
 
-/// As common.cl has it: bodies behind the last one that meet nothing.
+/// As in common.cl: padding bodies at the end, which overlap nothing.
 constexpr std::size_t kPadding = 16;
 
-/// The frame's work is done when each phase returns, so that times are honest. Directly on
-/// BroadPhase: the answer comes from the device as a whole, and workers have no pair buffers to
-/// fill.
+/// Waits for the device at the end of each phase, so that times are correct. Directly on
+/// BroadPhase: the device returns the whole answer, and workers fill no pair buffers.
 class DeviceBroadPhase : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor&) override;
@@ -46,16 +45,16 @@ class DeviceBroadPhase : public BroadPhase {
   void visitSetup(const CounterVisitor&) const final;
 
  protected:
-  // What an algorithm adds. reserve(), build() and search() are called with at least two bodies.
+  // To be implemented. reserve(), build() and search() are called with at least two bodies.
 
-  /// The kernels, with common.cl put before them.
+  /// The kernels' source, appended to common.cl.
   [[nodiscard]] virtual std::string_view kernelSource() const = 0;
   virtual void makeKernels(const cl::Program&) = 0;
-  /// Makes buffers for `count` bodies; called when there are more than ever before.
+  /// Makes buffers for `count` bodies; called when the maximum grows.
   virtual void reserve(std::size_t count) = 0;
   /// Enqueues building the structure from boxes().
   virtual void build() = 0;
-  /// Enqueues the search. It may be called again, with a larger sink.
+  /// Enqueues the search. May be called again, with a larger sink.
   virtual void search(const PairSink&) = 0;
 
   [[nodiscard]] std::size_t count() const { return count_; }
@@ -66,14 +65,14 @@ class DeviceBroadPhase : public BroadPhase {
   DeviceContext& context() { return *context_; }
   [[nodiscard]] const DeviceContext& context() const { return *context_; }
 
-  /// Enqueues a kernel for as many work items as FOR_EACH_BODY needs for `bodies`.
+  /// Enqueues a kernel with the work items that FOR_EACH_BODY needs for `bodies`.
   template <class... Arguments>
   void forBodies(cl::Kernel& kernel, std::size_t bodies, const Arguments&... arguments) {
     const std::size_t items = (bodies + bodies_per_item_ - 1) / bodies_per_item_;
     context_->launch(kernel, items, group_, arguments...);
   }
 
-  /// Whether a work item takes one body: for a GPU's many. Else hundreds, sixteen at a time.
+  /// Whether a work item processes one body, for a GPU. Else hundreds, sixteen at a time.
   [[nodiscard]] bool likeGpu() const;
 
   /// Length of each of the six arrays of sorted boxes, and a buffer for all of them (see
@@ -83,7 +82,7 @@ class DeviceBroadPhase : public BroadPhase {
     return context_->buffer(6 * (count + kPadding) * sizeof(float));
   }
 
-  /// Looks at all boxes; waits for the answer.
+  /// Summarises all boxes; waits for the result.
   FrameSummary summarise();
 
   /// Reads a buffer of `size` elements back: for drawing and checks, not within a phase.

@@ -13,8 +13,7 @@ namespace broadmark {
 namespace opencl {
 namespace {
 
-/// What get() fills a vector with; nothing if it fails: where no ICD is installed, or a platform is
-/// there and its device is not.
+/// Fills a vector by get(); empty on failure: no ICD is installed, or a platform has no device.
 template <class Found, class Get>
 std::vector<Found> foundBy(Get get) {
   std::vector<Found> found;
@@ -48,7 +47,7 @@ std::string whyNone() {
                      trimmed(found.front().getInfo<CL_PLATFORM_NAME>()));
 }
 
-/// The part of a CPU that has so many threads; the whole when it has no more.
+/// A sub-device of a CPU with that many threads; the whole CPU if it has no more.
 cl::Device withThreads(cl::Device device, int threads) {
   const auto units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   if (static_cast<cl_uint>(threads) >= units) return device;
@@ -95,15 +94,15 @@ DeviceContext::DeviceContext(ExecutionContext& execution) {
   }
 }
 
-// PoCL 3.1 says that a command is done before it lets go of the command's event, and that reaches
-// through the queue, which it holds, for the device, which it does not hold. So a part of a device
-// is freed only once no event holds the queue.
+// PoCL 3.1 reports a command as done before it releases the command's event. The event holds the
+// queue, which uses the device without holding it. So a sub-device is freed only once no event
+// holds the queue.
 DeviceContext::~DeviceContext() {
-  constexpr auto kPatience = std::chrono::seconds(1);  // others may keep references of their own
+  constexpr auto kPatience = std::chrono::seconds(1);  // others may hold references
   if (!on_cpu_ || queue_() == nullptr) return;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   const auto is_held = [this] {
-    cl_uint count = 0;  // the C interface, as the other one may throw
+    cl_uint count = 0;  // the C interface, as the C++ one may throw
     ::clGetCommandQueueInfo(queue_(), CL_QUEUE_REFERENCE_COUNT, sizeof count, &count, nullptr);
     return count > 1;
   };

@@ -1,7 +1,7 @@
-// An OpenCL device made ready.
+// An initialised OpenCL device.
 #pragma once
 
-// Khronos's C++ bindings, as all of Broadmark uses them: OpenCL 1.2, errors as cl::Error.
+// Khronos's C++ bindings, configured as in all of Broadmark: OpenCL 1.2, errors as cl::Error.
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
@@ -18,7 +18,7 @@
 
 namespace broadmark::opencl {
 
-/// Adds the time of its own life to `ns`.
+/// Adds its lifetime to `ns`.
 class ScopedTimer {
  public:
   explicit ScopedTimer(std::int64_t& ns) : ns_(ns) {}
@@ -32,12 +32,12 @@ class ScopedTimer {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Context and in-order queue on the wanted device. On a CPU it uses the execution's threads only.
-/// One for all instances under an Execution: making a context and building kernels takes far longer
-/// than a frame. Outlives all that is made from it.
+/// Context and in-order queue on the requested device. On a CPU it uses only the execution
+/// context's threads. Shared by all instances of an ExecutionContext: making a context and building
+/// kernels takes far longer than a frame. Must outlive all objects made from it.
 class DeviceContext final : public SharedResource {
  public:
-  /// Throws UnsupportedError that says why there is no such device.
+  /// Throws UnsupportedError with the reason if there is no such device.
   explicit DeviceContext(ExecutionContext&);
   ~DeviceContext() override;
   DeviceContext(const DeviceContext&) = delete;
@@ -46,20 +46,20 @@ class DeviceContext final : public SharedResource {
   [[nodiscard]] const cl::Device& device() const { return device_; }
   [[nodiscard]] const cl::Context& context() const { return context_; }
   [[nodiscard]] const cl::CommandQueue& queue() const { return queue_; }
-  /// Whether the device is a CPU: few fast threads, no local memory of its own.
+  /// Whether the device is a CPU: few fast threads, no dedicated local memory.
   [[nodiscard]] bool onCpu() const { return on_cpu_; }
 
-  /// Builds OpenCL C 1.2 kernels, or hands out what it built before. Throws UnsupportedError with
-  /// the start of the compiler's log.
+  /// Builds OpenCL C 1.2 kernels, or returns an earlier build. Throws UnsupportedError with the
+  /// start of the compiler's log.
   cl::Program build(const std::string& source, const std::string& options = {});
-  /// Time that all builds took.
+  /// Total time of all builds.
   [[nodiscard]] std::int64_t buildNanoseconds() const { return build_ns_; }
 
   /// A buffer of at least one byte. Throws UnsupportedError when the device cannot hold it.
   [[nodiscard]] cl::Buffer buffer(std::size_t bytes) const;
 
   /// Runs a kernel with these arguments, in order, on `items` work items rounded up to whole groups
-  /// of `group`. (A stated group size: PoCL compiles a kernel anew for each it has to guess.)
+  /// of `group`. (The group size is explicit: otherwise PoCL recompiles a kernel for each guess.)
   template <class... Arguments>
   void launch(cl::Kernel& kernel, std::size_t items, std::size_t group,
               const Arguments&... arguments) const {

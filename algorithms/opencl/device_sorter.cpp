@@ -5,12 +5,12 @@
 namespace broadmark::opencl {
 namespace {
 
-// As sort.cl has them.
+// As in sort.cl.
 constexpr int kSerialDigitBits = 11;  ///< at most
 constexpr int kGroupDigitBits = 4;
 constexpr std::size_t kGroupSize = 128;
 constexpr std::size_t kGroupBlock = kGroupSize * 4;
-/// Blocks for each thread of a CPU: more even out what else the machine does.
+/// Blocks per thread of a CPU: more than one balances other load.
 constexpr std::size_t kBlocksPerUnit = 4;
 
 }  // namespace
@@ -39,7 +39,7 @@ void DeviceSorter::resize(std::size_t count) {
 }
 
 void DeviceSorter::sort(int bits) {
-  // As few passes as can be, with digits of about the same size.
+  // The minimum number of passes, with digits of about the same size.
   const int most = by_groups_ ? kGroupDigitBits : kSerialDigitBits;
   const int passes = (bits + most - 1) / most;
   for (int done = 0; done < passes; ++done) {

@@ -5,21 +5,21 @@
 
 namespace broadmark::opencl {
 
-/// Keeps the buffers that sorting needs.
+/// Retains its buffers.
 class DeviceSorter {
  public:
-  /// `by_groups`: work groups share blocks, for GPUs; else a work item takes a whole block, for
-  /// CPUs. Both work on either.
+  /// `by_groups`: work groups share blocks, for GPUs; else a work item processes a whole block, for
+  /// CPUs. Both are correct on either.
   DeviceSorter(DeviceContext&, bool by_groups);
 
   /// Room for `count` pairs of key and value; allocates only to grow.
   void resize(std::size_t count);
 
-  /// To be filled, then sort()ed. Which buffers these are changes with every sort.
+  /// To be filled before sort(), which exchanges the buffers.
   [[nodiscard]] const cl::Buffer& keys() const { return keys_[current_]; }
   [[nodiscard]] const cl::Buffer& values() const { return values_[current_]; }
 
-  /// Sorts by the lowest `bits` bits of the keys. Returns at once; the queue is in order.
+  /// Sorts by the lowest `bits` bits of the keys. Asynchronous; the queue is in order.
   void sort(int bits);
 
  private:

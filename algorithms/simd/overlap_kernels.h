@@ -24,7 +24,7 @@ struct OverlapKernels {
   void (*sweep)(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
                 Range rows, PairBuffer& pairs);
 
-  /// The same within a cell, on all axes, and only for pairs whose home cell this is.
+  /// The same within a cell, on all axes, and only for pairs with this home cell.
   void (*sweep_cells)(const BoxArrays& boxes, const std::uint32_t* ends, const CellBody* bodies,
                       Range rows, PairBuffer& pairs);
 

@@ -38,7 +38,7 @@ struct alignas(64) CellBucket {
 /// The cells' own buckets, by cell, followed by the overflow buckets.
 class BucketTable {
  public:
-  /// Leaves this many empty cells.
+  /// Leaves `cells` empty cells.
   void reset(std::uint32_t cells);
   /// Stores a body that `is_new` in the cell, or updates its bounds. Branchless, since callers
   /// cannot predict which of the two applies.

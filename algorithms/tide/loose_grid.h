@@ -2,7 +2,7 @@
 //
 // A move is bound by memory latency and branch mispredictions. It touches few cache lines, and all
 // of them are prefetched: the buckets of the cells around the body (tide/bucket_table.h), and one
-// line for each body there whose packed bounds overlap.
+// line for each body there with overlapping packed bounds.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ class LooseGrid {
   [[nodiscard]] std::string validate() const;
 
  private:
-  /// A body whose packed bounds overlap a query.
+  /// A body with packed bounds that overlap a query.
   struct Candidate {
     std::uint32_t other;
     std::uint32_t bucket;  ///< index of its query, times kBuckets, plus the bucket in the query

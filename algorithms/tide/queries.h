@@ -40,8 +40,8 @@ using EventMask = std::uint32_t;
 inline constexpr EventMask kBeginEvents = 1;
 inline constexpr EventMask kEndEvents = 2;
 
-/// Finds the bodies whose overlap with a moving body may have changed. A body that moved far has
-/// two consecutive queries: one around its old box and one around its new box.
+/// Finds the bodies that may begin or cease to overlap a moving body. A body that moved far has two
+/// consecutive queries: one around its old box and one around its new box.
 struct alignas(64) MoveQuery {
   GridBox region;
   PackedBounds bounds;  ///< of the body, to be stored in its cell

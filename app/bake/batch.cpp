@@ -27,10 +27,10 @@ constexpr std::uint64_t kBytesPerBody = 32'000;
 using Clock = std::chrono::steady_clock;
 
 /// A job with its progress.
-struct Run {
+struct QueuedJob {
   enum class Phase { waiting, running, ended, stopped };
 
-  explicit Run(BakeJob what) : job(std::move(what)) {}
+  explicit QueuedJob(BakeJob what) : job(std::move(what)) {}
 
   [[nodiscard]] std::uint64_t memory() const { return job.bodies() * kBytesPerBody; }
 
@@ -46,9 +46,9 @@ class Batch {
  public:
   explicit Batch(std::vector<BakeJob> jobs)
       : memory_bytes_(thisEnvironment().memory_bytes / 4 * 3) {
-    for (BakeJob& job : jobs) runs_.push_back(std::make_unique<Run>(std::move(job)));
-    std::ranges::stable_sort(runs_, std::ranges::greater{},
-                             [](const auto& run) { return run->job.work(); });
+    for (BakeJob& job : jobs) queue_.push_back(std::make_unique<QueuedJob>(std::move(job)));
+    std::ranges::stable_sort(queue_, std::ranges::greater{},
+                             [](const auto& queued) { return queued->job.work(); });
   }
   ~Batch() { stopping_ = true; }
   Batch(const Batch&) = delete;
@@ -57,7 +57,7 @@ class Batch {
   void run(int threads, const std::function<void(const BakedJob&)>& ended,
            const std::function<bool(const BatchState&)>& progress) {
     constexpr std::chrono::milliseconds kGlance{20};
-    while (std::cmp_less(threads_.size(), threads) && threads_.size() < runs_.size()) {
+    while (std::cmp_less(threads_.size(), threads) && threads_.size() < queue_.size()) {
       threads_.push_back(std::async(std::launch::async, [this] { work(); }));
     }
     for (std::future<void>& thread : threads_) {
@@ -83,22 +83,22 @@ class Batch {
     std::chrono::duration<double> busy{};
     std::uint64_t longest = 0;
     int running = 0;
-    for (const auto& each : runs_) {
-      const Run& run = *each;
-      const std::uint64_t work = run.job.work();
+    for (const auto& entry : queue_) {
+      const QueuedJob& queued = *entry;
+      const std::uint64_t work = queued.job.work();
       const std::uint64_t done =
-          run.phase == Run::Phase::ended ? work : run.job.bodies() * run.frame;
+          queued.phase == QueuedJob::Phase::ended ? work : queued.job.bodies() * queued.frame;
       state.total += work;
       state.done += done;
       longest = std::max(longest, work - done);
-      if (run.phase == Run::Phase::ended) busy += run.end - run.begin;
-      if (run.phase != Run::Phase::running) continue;
+      if (queued.phase == QueuedJob::Phase::ended) busy += queued.end - queued.begin;
+      if (queued.phase != QueuedJob::Phase::running) continue;
       ++running;
-      busy += now - run.begin;
-      const SceneInfo& scene = run.job.scene;
+      busy += now - queued.begin;
+      const SceneInfo& scene = queued.job.scene;
       state.running +=
           fmt::format("{}{} {} N{} frame {}/{}", state.running.empty() ? "" : ", ", scene.name,
-                      scene.object_type, scene.objects, run.frame.load(), scene.frames);
+                      scene.object_type, scene.objects, queued.frame.load(), scene.frames);
     }
     // At the pace so far: all that run share what is left, but a recording has one thread.
     const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy.count();
@@ -109,7 +109,7 @@ class Batch {
 
   void work() {
     try {
-      while (Run* run = take()) perform(*run);
+      while (QueuedJob* queued = take()) perform(*queued);
     } catch (...) {  // an error that concerns the whole batch
       stopping_ = true;
       changed_.notify_all();
@@ -117,17 +117,17 @@ class Batch {
     }
   }
 
-  Run* take() {
+  QueuedJob* take() {
     std::unique_lock lock(mutex_);
     while (!stopped()) {
       bool waiting = false;
-      for (const auto& run : runs_) {
-        if (run->phase != Run::Phase::waiting) continue;
+      for (const auto& queued : queue_) {
+        if (queued->phase != QueuedJob::Phase::waiting) continue;
         waiting = true;
-        if (!fits(*run)) continue;
-        run->phase = Run::Phase::running;
-        run->begin = Clock::now();
-        return run.get();
+        if (!fits(*queued)) continue;
+        queued->phase = QueuedJob::Phase::running;
+        queued->begin = Clock::now();
+        return queued.get();
       }
       if (!waiting) return nullptr;
       changed_.wait(lock);  // for memory
@@ -135,40 +135,40 @@ class Batch {
     return nullptr;
   }
 
-  void perform(Run& run) {
+  void perform(QueuedJob& queued) {
     std::string failure;
     bool whole = false;
     try {
-      whole = bake(*run.job.simulation, run.job.paths, [&](std::uint32_t frame) {
-        run.frame = frame;
+      whole = bake(*queued.job.simulation, queued.job.paths, [&](std::uint32_t frame) {
+        queued.frame = frame;
         return !stopped();
       });
     } catch (const InputError& error) {
       failure = error.what();
     } catch (const std::bad_alloc&) {
-      failure = run.job.paths.front().string() + ": out of memory";
+      failure = queued.job.paths.front().string() + ": out of memory";
     }
-    run.job.simulation.reset();
+    queued.job.simulation.reset();
     const std::lock_guard lock(mutex_);
     const bool ended = whole || !failure.empty();
-    run.phase = ended ? Run::Phase::ended : Run::Phase::stopped;
-    run.end = Clock::now();
-    if (ended) ended_.push_back({run.job.paths, std::move(failure)});
+    queued.phase = ended ? QueuedJob::Phase::ended : QueuedJob::Phase::stopped;
+    queued.end = Clock::now();
+    if (ended) ended_.push_back({queued.job.paths, std::move(failure)});
     changed_.notify_all();
   }
 
-  /// Whether there is memory for one more simulation. A single one may always run.
-  [[nodiscard]] bool fits(const Run& candidate) const {
+  /// Whether there is memory for one more simulation. A single one may always queued.
+  [[nodiscard]] bool fits(const QueuedJob& candidate) const {
     std::uint64_t taken = 0;
-    for (const auto& run : runs_) {
-      if (run->phase == Run::Phase::running) taken += run->memory();
+    for (const auto& queued : queue_) {
+      if (queued->phase == QueuedJob::Phase::running) taken += queued->memory();
     }
     return taken == 0 || taken + candidate.memory() <= memory_bytes_;
   }
 
   [[nodiscard]] bool stopped() const { return stopping_ || InterruptGuard::requested(); }
 
-  std::vector<std::unique_ptr<Run>> runs_;  ///< largest first
+  std::vector<std::unique_ptr<QueuedJob>> queue_;  ///< largest first
   std::uint64_t memory_bytes_;
   std::atomic<bool> stopping_ = false;
   std::mutex mutex_;

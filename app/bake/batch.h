@@ -33,7 +33,7 @@ struct BakedJob {
 /// The progress of a batch.
 struct BatchState {
   std::uint64_t done = 0;   ///< body-frames
-  std::uint64_t total = 0;  ///< likewise
+  std::uint64_t total = 0;  ///< bodies x frames of the whole batch
   double seconds_left = 0;
   std::string running;  ///< the recordings being baked now, as text
 };

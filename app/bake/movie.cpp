@@ -68,8 +68,8 @@ bool makeMovie(OffscreenContext& context, const MovieOptions& options, Recording
   for (std::uint32_t number = 0; number < pictures; ++number) {
     const Frame frame = recording.at(number * options.every);
     const std::vector<Pair> pairs = sweptPairs(frame.boxes, scene.filter);
-    const PairRun run = pairs;
-    writePng(picturePath(folder, number), drawFrame(context, scene, frame, {&run, 1},
+    const PairRun all_pairs = pairs;
+    writePng(picturePath(folder, number), drawFrame(context, scene, frame, {&all_pairs, 1},
                                                     options.picture.width, options.picture.height));
     if (!go_on(number)) return false;
   }

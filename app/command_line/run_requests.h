@@ -1,5 +1,5 @@
-// Run requests as JSON ("schema": "broadmark-run/1", docs/run-requests.md): an object whose keys
-// and values are the main command's options and theirs, so that these are stated once.
+// Run requests as JSON ("schema": "broadmark-run/1", docs/run-requests.md): an object of
+// the main command's options and their values, so that options are declared once.
 #pragma once
 
 #include <string>

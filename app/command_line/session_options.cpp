@@ -130,7 +130,7 @@ void SessionParser::addCases() {
       kCase);
   tag(addAnswer(app_, cases.answer), kCase);
   tag(addDevice(app_, cases.device), kCase);
-  tag(addText(app_, "--filter", "REGEX", options_.filter, "run only cases whose id matches"),
+  tag(addText(app_, "--filter", "REGEX", options_.filter, "run only cases with a matching id"),
       kCase | kInspector);
   tag(addValue(
           app_, "--shard", "I/N",
@@ -171,7 +171,7 @@ void SessionParser::addRun() {
       kInspector | kFixedCount);
   tag(addInteger(app_, "--order-seed", "S", repetitions.order_seed, 0,
                  std::numeric_limits<long long>::max(),
-                 "seed of the order in which cases take turns, another for each repetition"),
+                 "seed of the interleaving order of cases; each repetition has another order"),
       kInspector);
   tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMaxPasses,
                  "unmeasured repetitions before them"),

@@ -17,7 +17,7 @@ namespace broadmark {
 /// A run request, and what is to be done with it.
 struct SessionOptions : RunRequest {
   std::filesystem::path export_case;   ///< where its smallest failing recording goes; "": nowhere
-  std::filesystem::path request_file;  ///< whose options are taken, too; "": none
+  std::filesystem::path request_file;  ///< source of further options; "": none
   std::filesystem::path written_request;  ///< where the request goes, which is not run; "": nowhere
   bool list_only = false;
   bool quiet = false;

@@ -228,7 +228,9 @@ std::function<int()> parseCommandLine(const std::vector<std::string>& arguments)
       return 0;
     };
   }
-  if (auto run = line->command()) return [line, run = std::move(run)] { return run(); };
+  if (auto command = line->command()) {
+    return [line, command = std::move(command)] { return command(); };
+  }
   return [options = sessionOf(*line, arguments)] { return runSession(options); };
 }
 

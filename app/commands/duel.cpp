@@ -35,7 +35,7 @@ struct Options : RunRequest {
   bool quiet = false;
 };
 
-/// The one source that is meant. Throws InputError.
+/// Opens the source of the duel. Throws InputError unless the options name exactly one.
 Source open(const Options& options) {
   Plan plan = makePlan(options, PlanUse::open, {});
   if (plan.entries.size() != 1) {
@@ -81,7 +81,7 @@ int exitStatusOf(const DuelResult& result) {
 void warnOf(const std::vector<DuelSide>& sides) {
   const Environment environment = thisEnvironment();
   RunWarnings warnings(environment);
-  for (const DuelSide& side : sides) warnings.of(side.run);
+  for (const DuelSide& side : sides) warnings.of(side.test_case);
 }
 
 int run(Options options) {

@@ -36,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Of the same kind of fault in the same algorithm only so many are shrunk and written.
+/// Maximum reproducers written per algorithm and kind of fault.
 constexpr std::uint64_t kMaxAlike = 3;
 
 struct Options : RunRequest {
@@ -234,17 +234,17 @@ class Torture {
     if (!round.finding) return;
     const TortureFinding& finding = *round.finding;
     const std::string kind(kFaultKinds.nameOf(finding.fault.kind));
-    if (log_.times[{finding.run.algorithm.id, kind}]++ >= kMaxAlike) return;
+    if (log_.times[{finding.test_case.algorithm.id, kind}]++ >= kMaxAlike) return;
     log_.found.push_back(write(finding, kind, number));
     progress.print(formatFoundFault(log_.found.back()));
   }
 
   FoundFault write(const TortureFinding& finding, const std::string& kind, std::uint64_t round) {
-    const fs::path file = unusedName(finding.run.algorithm.id, kind);
+    const fs::path file = unusedName(finding.test_case.algorithm.id, kind);
     writePart(file, *finding.frames, finding.part);
-    FoundFault found{.algorithm = finding.run.algorithm.id,
+    FoundFault found{.algorithm = finding.test_case.algorithm.id,
                      .kind = kind,
-                     .run = caseName(finding.run),
+                     .test_case = caseName(finding.test_case),
                      .world = finding.world,
                      .text = finding.fault.text,
                      .round = round,
@@ -255,8 +255,8 @@ class Torture {
     found.command = finding.fault.kind == FaultKind::wrong_answer ||
                             finding.fault.kind == FaultKind::failure ||
                             finding.fault.kind == FaultKind::hang
-                        ? reproducingCommand(finding.run, file)
-                        : torturingCommand(finding.run, file);
+                        ? reproducingCommand(finding.test_case, file)
+                        : torturingCommand(finding.test_case, file);
     return found;
   }
 

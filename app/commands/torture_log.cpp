@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kSchema = "broadmark-torture/1";
 
 Json toJson(const FoundFault& fault) {
-  return {{"algorithm", fault.algorithm}, {"kind", fault.kind},      {"case", fault.run},
+  return {{"algorithm", fault.algorithm}, {"kind", fault.kind},      {"case", fault.test_case},
           {"world", fault.world},         {"text", fault.text},      {"round", fault.round},
           {"file", fault.file},           {"bodies", fault.bodies},  {"frames", fault.frames},
           {"minimal", fault.minimal},     {"command", fault.command}};
@@ -25,7 +25,7 @@ Json toJson(const FoundFault& fault) {
 FoundFault foundFrom(const JsonFields& json) {
   return {.algorithm = json.text("algorithm"),
           .kind = json.text("kind"),
-          .run = json.text("case"),
+          .test_case = json.text("case"),
           .world = json.text("world"),
           .text = json.text("text"),
           .round = json.integer<std::uint64_t>("round"),
@@ -143,7 +143,7 @@ std::string tortureLogText(const TortureLog& log) {
 }
 
 std::string formatFoundFault(const FoundFault& fault) {
-  return fmt::format("{}: {}: {} ({}{})", fault.run, fault.kind, fault.text,
+  return fmt::format("{}: {}: {} ({}{})", fault.test_case, fault.kind, fault.text,
                      extentText(fault.bodies, fault.frames),
                      fault.minimal ? "" : ", perhaps not the smallest");
 }

@@ -15,8 +15,8 @@ namespace broadmark {
 /// A finding that has been written.
 struct FoundFault {
   std::string algorithm;
-  std::string kind;  ///< as in kFaultKinds
-  std::string run;   ///< as caseName()
+  std::string kind;       ///< as in kFaultKinds
+  std::string test_case;  ///< as caseName()
   std::string world;
   std::string text;
   std::uint64_t round = 0;

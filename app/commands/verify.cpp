@@ -81,8 +81,8 @@ std::string layerTable(const FilterStatistics& filter) {
     rows.front().push_back(fmt::format("with {}", layer));
     rows.push_back({"", fmt::format("{}", layer), number(bodies)});
     for (const auto& [other, others] : filter.layers) {
-      const auto pair = std::ranges::find_if(filter.layer_pairs, [&](const auto& one) {
-        return one.a == std::min(layer, other) && one.b == std::max(layer, other);
+      const auto pair = std::ranges::find_if(filter.layer_pairs, [&](const auto& entry) {
+        return entry.a == std::min(layer, other) && entry.b == std::max(layer, other);
       });
       rows.back().push_back(pair == filter.layer_pairs.end() ? kNothing : number(pair->pairs));
     }
@@ -142,7 +142,7 @@ std::optional<SceneDescription> readThrough(IndexedFrames& recording, bool descr
   return SceneDescription{};
 }
 
-/// Checks one recording and prints what it is. Nothing when interrupted. Throws InputError.
+/// Checks a recording and prints its description. Nothing when interrupted. Throws InputError.
 std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
   Source source = fileSource({file.string()}, options.reading);
   const auto opened = openForCommand(source, options.quiet);
@@ -177,9 +177,9 @@ int run(const Options& options) {
   std::vector<DescribedRecording> described;
   for (const auto& file : options.files) {
     try {
-      auto one = verifyOne(file, options);
-      if (!one) throw Interrupted();
-      described.push_back(std::move(*one));
+      auto recording = verifyOne(file, options);
+      if (!recording) throw Interrupted();
+      described.push_back(std::move(*recording));
     } catch (const InputError& error) {
       fmt::print(stderr, "broadmark: {}\n", error.what());
       status = exit_status::bad_input;

@@ -107,7 +107,7 @@ Verdict verdictOn(const Estimate& ratio, const ComparisonOptions& options) {
 }
 
 /// All but the times. `before` has one case or, of several baselines, that case of each. The
-/// verdict is not_timed for a case whose times are to be compared.
+/// verdict is not_timed even if the case was timed.
 CaseComparison compareCase(std::span<const Candidate> before, const Candidate& after,
                            const ComparisonOptions& options) {
   const CaseResult& a = *before.front().result;
@@ -130,11 +130,11 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
 }
 
 /// What is to be known of a run as a whole: that it is partial, and what may have disturbed it.
-void noteRun(const NamedResults& run, std::vector<std::string>& notes) {
-  const auto note = [&](const std::string& text) { notes.push_back(run.name + ": " + text); };
-  if (!run.results.complete) note("partial: the run did not come to its end");
+void noteRun(const NamedResults& named, std::vector<std::string>& notes) {
+  const auto note = [&](const std::string& text) { notes.push_back(named.name + ": " + text); };
+  if (!named.results.complete) note("partial: the run did not come to its end");
   std::set<std::string> warnings;
-  for (const CaseResult& result : run.results.cases) {
+  for (const CaseResult& result : named.results.cases) {
     if (!result.isComplete()) {
       note(fmt::format("{}: {} of {} repetitions", result.id, result.repetitions.size(),
                        result.conditions.repetitions));
@@ -151,9 +151,9 @@ class Matching {
   Matching(std::span<const NamedResults> before, const NamedResults& after,
            const ComparisonOptions& options)
       : options_(options), within_a_run_(before.size() == 1 && before[0].name == after.name) {
-    for (const NamedResults& run : before) {
+    for (const NamedResults& named : before) {
       std::set<CaseKey> first_ones;  // of this run
-      for (const auto& [key, candidate] : keysOf(run.results, options.by)) {
+      for (const auto& [key, candidate] : keysOf(named.results, options.by)) {
         if (!first_ones.insert(key).second) continue;
         if (!before_.contains(key)) order_.push_back(key);
         before_[key].push_back(candidate);
@@ -263,7 +263,7 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
                           const ComparisonOptions& options) {
   if (!options.by.empty()) requireKnown(options.by, after.results);
   Comparison comparison{.options = options, .cases = {}, .notes = {}};
-  for (const NamedResults& run : before) noteRun(run, comparison.notes);
+  for (const NamedResults& named : before) noteRun(named, comparison.notes);
   noteRun(after, comparison.notes);
   comparison.cases = Matching(before, after, comparison.options).takeCases();
   const double drift = comparison.drift().value_or(0);

@@ -146,9 +146,9 @@ std::string testCase(const Comparison& comparison, const CaseComparison& compare
 
 std::string junit(const Comparison& comparison) {
   const auto failures = std::ranges::count_if(
-      comparison.cases, [&](const CaseComparison& one) { return comparison.fails(one); });
-  const auto skipped = std::ranges::count_if(comparison.cases, [&](const CaseComparison& one) {
-    return isSkipped(one) && !comparison.fails(one);
+      comparison.cases, [&](const CaseComparison& compared) { return comparison.fails(compared); });
+  const auto skipped = std::ranges::count_if(comparison.cases, [&](const CaseComparison& compared) {
+    return isSkipped(compared) && !comparison.fails(compared);
   });
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"

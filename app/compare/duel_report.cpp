@@ -25,15 +25,15 @@ std::string changeText(double ratio) {
 std::string table(const DuelResult& result) {
   std::vector<std::vector<std::string>> rows = {
       {"", "variant", "median", "least", "ratio to the first named", "95 % interval"}};
-  for (const DuelPlace& place : result.places) {
-    const DuelResult::Side& side = result.sides[place.side];
-    const bool ties = std::ranges::count(result.places, place.place, &DuelPlace::place) > 1;
-    const bool first = place.side == 0;
-    rows.push_back({fmt::format("{}{}.", ties ? "=" : "", place.place), side.name,
+  for (const DuelRank& rank : result.ranking) {
+    const DuelResult::Side& side = result.sides[rank.side];
+    const bool ties = std::ranges::count(result.ranking, rank.rank, &DuelRank::rank) > 1;
+    const bool first = rank.side == 0;
+    rows.push_back({fmt::format("{}{}.", ties ? "=" : "", rank.rank), side.name,
                     durationText(quantile(side.seconds, 0.5)),
                     durationText(quantile(side.seconds, 0)),
-                    first ? "1" : fmt::format("{:.4f}", place.ratio.value),
-                    first ? "" : intervalText(place.ratio.ci95, 4)});
+                    first ? "1" : fmt::format("{:.4f}", rank.ratio.value),
+                    first ? "" : intervalText(rank.ratio.ci95, 4)});
   }
   return alignColumns(rows, {true, false, true, true, true, true});
 }
@@ -54,7 +54,7 @@ std::string histogram(const std::vector<double>& ratios) {
 }
 
 std::string verdictOnTwo(const DuelResult& result) {
-  const Estimate& ratio = std::ranges::find(result.places, 1U, &DuelPlace::side)->ratio;
+  const Estimate& ratio = std::ranges::find(result.ranking, 1U, &DuelRank::side)->ratio;
   const std::string& a = result.sides[0].name;
   const std::string& b = result.sides[1].name;
   const Verdict verdict = verdictOn(ratio.ci95, result.margin);
@@ -86,11 +86,11 @@ std::string intervalText(const Interval& interval, int digits) {
 std::string verdictOf(const DuelResult& result) {
   if (result.sides.size() == 2) return verdictOnTwo(result);
   std::vector<std::string> best;
-  for (const DuelPlace& place : result.places) {
-    if (place.place == 1) best.push_back(result.sides[place.side].name);
+  for (const DuelRank& rank : result.ranking) {
+    if (rank.rank == 1) best.push_back(result.sides[rank.side].name);
   }
   return best.size() == 1 ? fmt::format("{} is the fastest", best.front())
-                          : fmt::format("{} are not told apart at the top", fmt::join(best, ", "));
+                          : fmt::format("{} share the first rank", fmt::join(best, ", "));
 }
 
 std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
@@ -125,12 +125,12 @@ std::string duelJson(const DuelResult& result, const RecordingReference& recordi
                              {"reason", side.reason},
                              {"seconds", side.seconds}});
   }
-  for (const DuelPlace& place : result.places) {
-    const auto [low, high] = place.ratio.ci95;
-    json["ranking"].push_back({{"side", place.side},
-                               {"name", result.sides[place.side].name},
-                               {"place", place.place},
-                               {"ratio", place.ratio.value},
+  for (const DuelRank& rank : result.ranking) {
+    const auto [low, high] = rank.ratio.ci95;
+    json["ranking"].push_back({{"side", rank.side},
+                               {"name", result.sides[rank.side].name},
+                               {"place", rank.rank},
+                               {"ratio", rank.ratio.value},
                                {"ci95", std::isfinite(high) ? Json{low, high} : Json(nullptr)}});
   }
   return formatJson(json);

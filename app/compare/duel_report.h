@@ -14,7 +14,7 @@ std::string formatDuel(const DuelResult&, const SceneInfo&);
 /// "1.012…1.034", or that there were too few rounds for one.
 std::string intervalText(const Interval&, int digits);
 
-/// Which one is the fastest, in one line. Only of a duel that is ok(), with a round.
+/// The fastest side, in one line. The duel must be ok() and have at least one round.
 std::string verdictOf(const DuelResult&);
 
 /// All times and ratios as JSON (schema "broadmark-duel/1").

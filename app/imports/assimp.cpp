@@ -98,7 +98,7 @@ class MovingScene {
 
   [[nodiscard]] const MeshTopology& topology() const { return topology_; }
 
-  /// How many frames there are, so many a second.
+  /// Number of frames at `rate` frames per second.
   [[nodiscard]] std::uint64_t frames(double rate) const {
     if (animation_ == nullptr) return 1;
     const double frames = animation_->mDuration / ticksPerSecond() * rate;
@@ -167,7 +167,7 @@ class MovingScene {
     }
   }
 
-  /// Where each vertex is moved; one for all without bones.
+  /// The transform of every vertex; a single transform for a mesh without bones.
   [[nodiscard]] std::vector<aiMatrix4x4> pullsOf(const aiMesh& mesh,
                                                  const aiMatrix4x4& node) const {
     if (mesh.mNumBones == 0) return {node};

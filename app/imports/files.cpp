@@ -89,7 +89,7 @@ std::string sequenceName(const std::vector<fs::path>& files) {
     if (c < ' ' || c > '~' || c == '/') c = '_';
   }
   if (name.empty()) name = "frames";
-  return name.substr(0, kLongestName);
+  return name.substr(0, kMaxNameLength);
 }
 
 }  // namespace broadmark::imports

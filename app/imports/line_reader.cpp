@@ -72,12 +72,12 @@ void LineReader::require(std::string_view expected) {
   throw InputError(fmt::format("{}: ends after line {}: {} is expected", path_, number_, expected));
 }
 
-LineReader::Place LineReader::place() const {
+LineReader::Position LineReader::place() const {
   if (again_) return {begin_, number_ - 1};
   return {begin_ + length_, number_};
 }
 
-void LineReader::seek(Place place) {
+void LineReader::seek(Position place) {
   file_.clear();
   file_.seekg(static_cast<std::streamoff>(place.offset));
   begin_ = place.offset;

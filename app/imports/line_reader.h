@@ -27,13 +27,13 @@ class LineReader {
   [[nodiscard]] std::uint64_t number() const { return number_; }
 
   /// Where a line begins.
-  struct Place {
+  struct Position {
     std::uint64_t offset = 0;
     std::uint64_t lines_before = 0;
   };
   /// Of the line that next() gives.
-  [[nodiscard]] Place place() const;
-  void seek(Place place);
+  [[nodiscard]] Position place() const;
+  void seek(Position place);
 
   /// Throws InputError about the present line.
   [[noreturn]] void fail(std::string_view what) const { fail(number_, what); }

@@ -67,8 +67,8 @@ class TextFrames final : public IndexedFrames {
   /// Where a frame is.
   struct FramePlace {
     std::size_t file = 0;
-    LineReader::Place place;
-    bool empty = false;  ///< it stands nowhere: nobody is there
+    LineReader::Position place;
+    bool empty = false;  ///< no coordinates: the element is absent
   };
 
   void scan(std::size_t file) {
@@ -113,7 +113,7 @@ class TextFrames final : public IndexedFrames {
     places_.push_back(place);
   }
 
-  /// Takes note of who is there.
+  /// Counts the elements of a frame.
   void count(const LineReader& lines) {
     std::vector<TextRow>& rows = frame_.rows;
     if (!std::ranges::is_sorted(rows, {}, &TextRow::id)) {

@@ -26,7 +26,7 @@ float Inspector::transportHeight(float width) const {
 void Inspector::drawTransport(const RunProgress& progress) {
   const auto scope = ui_.scope("Playback");
   const bool narrow = ImGui::GetWindowWidth() < kOneRowWidth * ui_.scale;
-  ImGui::BeginDisabled(session_.playback.footage() == nullptr);
+  ImGui::BeginDisabled(session_.playback.source() == nullptr);
   drawButtons();
   ImGui::SameLine();
   drawSpeed();
@@ -108,8 +108,8 @@ void Inspector::drawPosition(const RunProgress& progress) {
 void Inspector::drawStatus(const RunProgress& progress) {
   const auto scope = ui_.scope("Status");
   ImGui::SetCursorPosY(4 * ui_.scale);
-  if (progress.footage) {
-    ui_.plain(sourceText(progress.footage.get()));
+  if (progress.source) {
+    ui_.plain(sourceText(progress.source.get()));
     ui_.note("source");
     ImGui::SameLine(0, 14 * ui_.scale);
     const std::string bodies = counted(progress.scene.objects, "body", "bodies");
@@ -135,9 +135,9 @@ void Inspector::drawStatus(const RunProgress& progress) {
   const std::string shown = message.text.substr(0, message.text.find('\n'));
   const float x = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(shown.c_str()).x;
   ImGui::SameLine(std::max(x, ImGui::GetCursorPosX() + 20 * ui_.scale));
-  ui_.coloured(message.kind == Message::Kind::error     ? ui_.theme.bad
-               : message.kind == Message::Kind::warning ? ui_.theme.warning
-                                                        : ui_.theme.faint,
+  ui_.coloured(message.severity == Severity::error     ? ui_.theme.bad
+               : message.severity == Severity::warning ? ui_.theme.warning
+                                                       : ui_.theme.faint,
                shown);
 }
 

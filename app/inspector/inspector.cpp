@@ -46,7 +46,7 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
     session_.notices.wanted_panels.push_back(panel);
   session_.notices.on_file = [this](const fs::path& file) { preferences_.remember(file); };
   ui_.on_correction = [this](const std::string& text) {
-    session_.notices.say(text, Message::Kind::warning);
+    session_.notices.say(text, Severity::warning);
   };
   makeShortcuts();
 }
@@ -63,8 +63,8 @@ void Inspector::restyle() {
 
 void Inspector::loadFonts() {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  ui_.large = ui_.letters.load(atlas, std::floor(kFontSize * ui_.scale),
-                               std::floor(kLargeFontSize * ui_.scale));
+  ui_.large = ui_.glyphs.load(atlas, std::floor(kFontSize * ui_.scale),
+                              std::floor(kLargeFontSize * ui_.scale));
   renderer_.uploadFonts(atlas);
 }
 
@@ -76,13 +76,13 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
   input.applyTo(io);
   if (std::exchange(restyle_, false)) restyle();
-  if (ui_.letters.stale()) loadFonts();
+  if (ui_.glyphs.dirty()) loadFonts();
   session_.runs.gate().beginDrawing();
   ui_.beforePicture();
   prepareNavigation();
   ImGui::NewFrame();
   ui_.begin();
-  session_.runs.look([&](const RunProgress& progress) {
+  session_.runs.readProgress([&](const RunProgress& progress) {
     session_.advance(progress, seconds);
     handleShortcuts();
     build(progress, width, height);
@@ -98,8 +98,8 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   session_.commit();
 }
 
-bool Inspector::lively() {
-  return session_.busy() || views_.lively() || ImGui::GetIO().WantTextInput;
+bool Inspector::needsRedraw() {
+  return session_.busy() || views_.needsRedraw() || ImGui::GetIO().WantTextInput;
 }
 
 std::optional<fs::path> Inspector::takeScreenshotRequest() {
@@ -158,23 +158,23 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
       std::max(status_top - (bottom > 0 ? bottom + gap : 0) - transport_height, top + 1);
 
   if (left > 0) {
-    drawPlace(Place::left, progress, {0, top}, {left, status_top - top});
+    drawDockArea(DockArea::left, progress, {0, top}, {left, status_top - top});
     splitter("left splitter", {left, top}, {gap, status_top - top}, preferences_.left, 1);
   }
   if (right > 0) {
-    drawPlace(Place::right, progress, {w - right, top}, {right, status_top - top});
+    drawDockArea(DockArea::right, progress, {w - right, top}, {right, status_top - top});
     splitter("right splitter", {w - right - gap, top}, {gap, status_top - top}, preferences_.right,
              -1);
   }
   if (bottom > 0) {
-    drawPlace(Place::bottom, progress, {view_left, status_top - bottom}, {middle, bottom});
+    drawDockArea(DockArea::bottom, progress, {view_left, status_top - bottom}, {middle, bottom});
     splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
              preferences_.bottom, -1);
   }
   views_.draw(ui_, session_, progress, {view_left, top}, {middle, view_bottom - top});
   beginAt("Playback", {view_left, view_bottom}, {middle, transport_height},
           ImGuiWindowFlags_NoScrollbar);
-  takeFocus(kPlaces.entries.size());
+  takeFocus(kDockAreas.entries.size());
   drawTransport(progress);
   ImGui::End();
   beginAt("Status", {0, status_top}, {w, line}, ImGuiWindowFlags_NoScrollbar);
@@ -190,13 +190,14 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   ImGui::PopStyleVar();
 }
 
-void Inspector::drawPlace(Place place, const RunProgress& progress, ImVec2 position, ImVec2 size) {
-  const std::string name(kPlaces.nameOf(place));
+void Inspector::drawDockArea(DockArea area, const RunProgress& progress, ImVec2 position,
+                             ImVec2 size) {
+  const std::string name(kDockAreas.nameOf(area));
   beginAt(name.c_str(), position, size);
-  takeFocus(static_cast<std::size_t>(place));
+  takeFocus(static_cast<std::size_t>(area));
   if (ImGui::BeginTabBar(name.c_str(), ImGuiTabBarFlags_FittingPolicyScroll)) {
     for (const auto& panel : panels_) {
-      if (panel.place != place) continue;
+      if (panel.area != area) continue;
       const bool wanted = std::ranges::find(session_.notices.wanted_panels, panel.name) !=
                           session_.notices.wanted_panels.end();
       const bool open =
@@ -232,22 +233,22 @@ void Inspector::drawErrors() {
 }
 
 void Inspector::leave() {
-  ending_ = false;
+  quit_asked_ = false;
   session_.document.leave([this] { closing_ = true; });
 }
 
 void Inspector::drawQuitDialog() {
-  if (!ending_ || !session_.notices.errors.empty()) return;
+  if (!quit_asked_ || !session_.notices.errors.empty()) return;
   if (!session_.jobs.running()) return leave();  // it has ended meanwhile
-  const auto scope = ui_.scope("Ending");
+  const auto scope = ui_.scope("Quit");
   std::string text;
   for (const Job* const job : session_.jobs.all()) {
     if (job->running()) text += job->status().doing + '\n';
   }
-  const auto answer = ui_.ask("Still at work", text + "What is finished is kept.",
-                              {{"End it", "What is not finished is given up"}});
+  const auto answer = ui_.ask("Work in progress", text + "Finished work is kept.",
+                              {{"Quit anyway", "Discard unfinished work"}});
   if (!answer) return;
-  ending_ = false;
+  quit_asked_ = false;
   if (*answer == 0) leave();
 }
 

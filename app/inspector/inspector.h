@@ -64,11 +64,11 @@ class Inspector {
   [[nodiscard]] bool closing() const { return closing_; }
   /// Closes, once it is decided what becomes of unsaved changes and of work in the background.
   void close() {
-    ending_ = true;
+    quit_asked_ = true;
     if (!session_.jobs.running()) leave();
   }
   /// Whether pictures change without input.
-  [[nodiscard]] bool lively();
+  [[nodiscard]] bool needsRedraw();
   /// Where to write the screenshot that the user has asked for; once.
   std::optional<std::filesystem::path> takeScreenshotRequest();
   /// Where the numbered pictures of a movie go; "": none is being made.
@@ -88,7 +88,7 @@ class Inspector {
   void drawMenus(const RunProgress& progress);
   void drawScaleMenu();
   void resetLayout();
-  void drawPlace(Place place, const RunProgress& progress, ImVec2 position, ImVec2 size);
+  void drawDockArea(DockArea area, const RunProgress& progress, ImVec2 position, ImVec2 size);
   [[nodiscard]] float transportHeight(float width) const;
   void drawTransport(const RunProgress& progress);
   void drawButtons();
@@ -97,7 +97,7 @@ class Inspector {
   void drawStatus(const RunProgress& progress);
   void drawHelp();
   void drawErrors();
-  /// While `ending_`: whether to end the work in the background, or to stay.
+  /// While `quit_asked_`: whether to end the work in the background, or to stay.
   void drawQuitDialog();
   /// Closes, once it is decided what becomes of unsaved changes.
   void leave();
@@ -134,7 +134,7 @@ class Inspector {
   bool navigates_ = false;               ///< keys move among the widgets
   std::optional<std::size_t> to_focus_;  ///< which of the places, in the next picture
   std::size_t focused_ = 0;
-  bool ending_ = false;  ///< it is to be closed, and work goes on in the background
+  bool quit_asked_ = false;  ///< the quit dialog is open
   bool closing_ = false;
   float screen_scale_;    ///< that the screen suggests
   bool restyle_ = false;  ///< theme or scale are others than in the last picture

@@ -36,8 +36,8 @@ void Inspector::drawMenus(const RunProgress& progress) {
                      progress.snapshot != nullptr)) {
       askSaveRecording();
     }
-    if (ui_.menuItem("Export timings…", nullptr, false, !progress.lanes.empty())) {
-      askExportTimings(formatFrameTable(session_.playback.scene(), progress.lanes));
+    if (ui_.menuItem("Export timings…", nullptr, false, !progress.tracks.empty())) {
+      askExportTimings(formatFrameTable(session_.playback.scene(), progress.tracks));
     }
     ImGui::Separator();
     if (ui_.menuItem("Screenshot", keysFor(kTakePicture).c_str())) screenshot_asked_ = true;
@@ -84,8 +84,8 @@ void Inspector::drawMenus(const RunProgress& progress) {
 
 void Inspector::resetLayout() {
   preferences_.resetLayout();
-  for (const auto& [place, name] : kPlaces.entries) {
-    const auto first = std::ranges::find(panels_, place, &PanelTab::place);
+  for (const auto& [place, name] : kDockAreas.entries) {
+    const auto first = std::ranges::find(panels_, place, &PanelTab::area);
     if (first != panels_.end()) session_.notices.bringUp(first->name);
   }
 }

@@ -29,8 +29,8 @@ constexpr double kIdleSeconds = 0.25;
 /// At least this much time between two pictures.
 constexpr double kPictureSeconds = 1.0 / 60;
 
-/// A script that is played, perhaps somebody else's: while it is, only files below the current
-/// folder are written.
+/// A running script, which may be untrusted: meanwhile only files below the current folder are
+/// written.
 struct Script {
   explicit Script(const fs::path& path)
       : player(parseScript(readTextFile(path), path.string()), path.string()) {}
@@ -123,8 +123,8 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
     while (!inspector.closing()) {
       const auto now = std::chrono::steady_clock::now();
       const double seconds = std::chrono::duration<double>(now - before).count();
-      const bool lively = inspector.lively() || script || !window.input().empty();
-      window.poll(lively ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
+      const bool needsRedraw = inspector.needsRedraw() || script || !window.input().empty();
+      window.poll(needsRedraw ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
       for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
       if (window.closing()) {
         window.stayOpen();  // until the user has decided about unsaved changes
@@ -178,14 +178,13 @@ void inspectOffscreen(Plan plan, const fs::path& script_file) {
       target = std::make_unique<Framebuffer>(gl, width, height, 1);
     }
     inspector.draw(input, width, height, kOffscreenSeconds, [&] { target->bind(); });
-    gl.Finish();  // or pictures that nobody waits for would pile up in the driver, gigabytes of
-                  // them
+    gl.Finish();  // otherwise unfinished pictures pile up in the driver, gigabytes of them
     const auto picture = [&] { return target->read(); };
     takePictures(inspector, movie, picture);
     if (const auto path = script ? script->player.takeScreenshot() : std::nullopt) {
       writePng(*path, picture());
     }
-    const bool busy = (script && !script->player.done()) || inspector.lively();
+    const bool busy = (script && !script->player.done()) || inspector.needsRedraw();
     calm = busy ? 0 : calm + 1;
     if (busy && input.empty()) inspector.session().runs.waitUntilIdle(std::chrono::milliseconds(2));
   }

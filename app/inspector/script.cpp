@@ -137,12 +137,14 @@ const std::vector<ScriptVerb>& scriptVerbs() {
        &P::places},
       {"write", "VALUE FILE", 2, 2, "writes a value of the session to a file",
        [](P& player, const Words& words, Inspector&) {
-         player.steps_.push_back([&player, words](Inspector& inspector, InputQueue&) {
-           const std::optional<std::string> now = inspector.value(words[0]);
-           if (!now) player.fail(fmt::format("unknown value '{}'", words[0]));
-           writeTextFile(words[1], *now + "\n");
-           return true;
-         });
+         const std::string name = currentScriptWord(words[0]);
+         player.steps_.push_back(
+             [&player, name, file = words[1]](Inspector& inspector, InputQueue&) {
+               const std::optional<std::string> now = inspector.value(name);
+               if (!now) player.fail(fmt::format("unknown value '{}'", name));
+               writeTextFile(file, *now + "\n");
+               return true;
+             });
        }},
       {"resize", "WIDTHxHEIGHT", 1, 1, "changes the size of the picture", &P::resize},
       {"screenshot", "FILE", 1, 1, "saves what is seen",
@@ -356,16 +358,16 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
     fail(fmt::format("unknown relation '{}' (one of: = != < > <= >= ~)", relation));
   }
   const auto start = std::chrono::steady_clock::now();
-  steps_.push_back(
-      [this, words, start, busy_at = start](Inspector& inspector, InputQueue&) mutable {
-        const std::optional<std::string> now = inspector.value(words[0]);
-        if (now && holds(*now, words[1], words[2])) return true;
-        // It may become so as long as something goes on, and for a while after that.
-        if (inspector.session().busy()) busy_at = std::chrono::steady_clock::now();
-        if (secondsSince(start) < kPatience && secondsSince(busy_at) < idle_patience_) return false;
-        if (!now) fail(fmt::format("unknown value '{}'", words[0]));
-        fail(fmt::format("expected {} {} {}, but it is '{}'", words[0], words[1], words[2], *now));
-      });
+  steps_.push_back([this, name = currentScriptWord(words[0]), relation, text = words[2], start,
+                    busy_at = start](Inspector& inspector, InputQueue&) mutable {
+    const std::optional<std::string> now = inspector.value(name);
+    if (now && holds(*now, relation, text)) return true;
+    // It may become so as long as something goes on, and for a while after that.
+    if (inspector.session().busy()) busy_at = std::chrono::steady_clock::now();
+    if (secondsSince(start) < kPatience && secondsSince(busy_at) < idle_patience_) return false;
+    if (!now) fail(fmt::format("unknown value '{}'", name));
+    fail(fmt::format("expected {} {} {}, but it is '{}'", name, relation, text, *now));
+  });
 }
 
 void ScriptPlayer::places(const Words& words, Inspector& inspector) {

@@ -72,7 +72,7 @@ class ScriptPlayer {
   void moveInto(const std::string& widget, float x, float y);
   void reveal(const std::string& widget);
   void push(InputEvent event);
-  /// Lets so many pictures pass.
+  /// Waits for this number of pictures.
   void pause(int pictures = 1);
   [[nodiscard]] float number(const std::string& text) const;
   [[nodiscard]] const WidgetPlace& place(Inspector& inspector, const std::string& widget) const;
@@ -83,7 +83,7 @@ class ScriptPlayer {
   std::size_t next_ = 0;
   int number_ = 0;            ///< of the line being played
   double idle_patience_ = 2;  ///< in seconds
-  std::vector<Step> steps_;   ///< of that line, still to be done
+  std::vector<Step> steps_;   ///< pending steps of the current line
   std::optional<std::pair<int, int>> resize_;
   std::optional<std::filesystem::path> screenshot_;
 };

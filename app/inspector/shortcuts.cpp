@@ -31,9 +31,9 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
 /// While keys move among the widgets; Dear ImGui handles them.
 constexpr std::pair<const char*, const char*> kNavigation[] = {
     {"Arrows", "after F6, or in a list: to the next widget"},
-    {"Enter, Space", "likewise: press it, or type into it"},
-    {"Alt", "likewise: to the menus, and back"},
-    {"Escape", "likewise: back, and at last to the view"},
+    {"Enter, Space", "on a focused widget: press it, or type into it"},
+    {"Alt", "on a focused widget: to the menus, and back"},
+    {"Escape", "on a focused widget: back, and finally to the view"},
 };
 
 /// Keys that move among the widgets once F6 has been pressed.
@@ -57,23 +57,25 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_F, false, false, "fly to the selection, or to all",
        [this] { session_.selection.flyThere(); }},
       {GLFW_KEY_H, false, false, "hide what overlaps nothing, or show it",
-       [this] { session_.view.hide_free = !session_.view.hide_free; }},
+       [this] { session_.display.hide_free = !session_.display.hide_free; }},
       {GLFW_KEY_C, false, false, "the next colouring",
        [this] {
-         ++session_.view.colouring;
-         session_.view.filter.hidden_classes = 0;
+         ++session_.display.colouring;
+         session_.display.filter.hidden_classes = 0;
        }},
       {GLFW_KEY_V, false, false, "a second view beside the first, or one",
        [this] { session_.showSecond(!session_.second); }},
       {GLFW_KEY_M, false, false, "authored scene: the gizmo that moves, or none",
        [this] { takeTool(Tool::move); }},
-      {GLFW_KEY_T, false, false, "likewise: the gizmo that turns",
+      {GLFW_KEY_T, false, false, "in an authored scene: the gizmo that rotates",
        [this] { takeTool(Tool::turn); }},
-      {GLFW_KEY_R, false, false, "likewise: the gizmo that scales",
+      {GLFW_KEY_R, false, false, "in an authored scene: the gizmo that scales",
        [this] { takeTool(Tool::scale); }},
-      {GLFW_KEY_L, false, false, "likewise: the gizmo along the first body's axes, or the world's",
+      {GLFW_KEY_L, false, false,
+       "in an authored scene: gizmo along the first body's axes, or the world's",
        [this] { session_.document.tools.local = !session_.document.tools.local; }},
-      {GLFW_KEY_B, false, false, "likewise: the brush, or none", [this] { takeTool(Tool::brush); }},
+      {GLFW_KEY_B, false, false, "in an authored scene: the brush, or none",
+       [this] { takeTool(Tool::brush); }},
       {GLFW_KEY_ESCAPE, false, false,
        "close a list, a dialog, this page; take a drag back; no brush; no span; no body",
        [this] { escape(); }},
@@ -82,7 +84,7 @@ void Inspector::makeShortcuts() {
        [this] {
          if (session_.document.shown()) {
            saveScene(files_, session_);
-         } else if (session_.playback.footage()) {
+         } else if (session_.playback.source()) {
            askSaveRecording();
          }
        }},
@@ -101,7 +103,7 @@ void Inspector::makeShortcuts() {
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
       {GLFW_KEY_F6, false, false, "to the next place; then arrows move among its widgets",
        [this] { focusPlace(1); }},
-      {GLFW_KEY_F6, false, true, "likewise, the place before", [this] { focusPlace(-1); }},
+      {GLFW_KEY_F6, false, true, "focuses the previous panel", [this] { focusPlace(-1); }},
       {GLFW_KEY_F1, false, false, kShowKeys, [this] { help_ = !help_; }},
       {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
       {GLFW_KEY_Q, true, false, kQuit, [this] { close(); }},
@@ -141,15 +143,15 @@ void Inspector::prepareNavigation() {
 
 void Inspector::focusPlace(int step) {
   // The places, then the playback.
-  const auto count = static_cast<int>(kPlaces.entries.size() + 1);
+  const auto count = static_cast<int>(kDockAreas.entries.size() + 1);
   const int from = navigates_ ? static_cast<int>(focused_) : step > 0 ? -1 : 0;
   to_focus_ = static_cast<std::size_t>((from + step + count) % count);
 }
 
 void Inspector::enterPanel(const PanelTab& panel) {
   session_.notices.bringUp(panel.name);
-  for (std::size_t i = 0; i < kPlaces.entries.size(); ++i) {
-    if (kPlaces.entries[i].value == panel.place) to_focus_ = i;
+  for (std::size_t i = 0; i < kDockAreas.entries.size(); ++i) {
+    if (kDockAreas.entries[i].value == panel.area) to_focus_ = i;
   }
 }
 

@@ -11,7 +11,7 @@
 
 #include "inspector/inspector.h"
 #include "inspector/session/answer_text.h"
-#include "inspector/session/lane_statistics.h"
+#include "inspector/session/track_statistics.h"
 #include "inspector/session/wrong_pair.h"
 
 namespace broadmark {
@@ -28,23 +28,23 @@ std::string textOf(const std::array<float, count>& numbers) {
   return fmt::format(kFormat, fmt::join(numbers, " "));
 }
 
-void addLanes(Values& values, const Session& session, const RunProgress& progress) {
-  for (const LaneReport& lane : progress.lanes) {
-    const std::string name = "lane." + lane.spec.run.algorithm.id + ".";
-    values[name + "status"] = statusName(lane.status);
-    values[name + "reason"] = lane.reason;
-    values[name + "frame"] = std::to_string(lane.frame);
-    values[name + "over"] = std::to_string(framesOver(lane, session.timeline.budget_ms));
+void addTracks(Values& values, const Session& session, const RunProgress& progress) {
+  for (const TrackReport& track : progress.tracks) {
+    const std::string name = "algorithm." + track.spec.test_case.algorithm.id + ".";
+    values[name + "status"] = statusName(track.status);
+    values[name + "reason"] = track.reason;
+    values[name + "frame"] = std::to_string(track.frame);
+    values[name + "over"] = std::to_string(framesOver(track, session.timeline.budget_ms));
     for (const FrameCount count : {FrameCount::missed, FrameCount::false_pairs,
                                    FrameCount::allowed_extra, FrameCount::invalid}) {
       std::uint64_t sum = 0;
-      for (const FrameRecord& record : lane.frames) sum += record.counts[count];
+      for (const FrameRecord& record : track.frames) sum += record.counts[count];
       values[name + std::string(kFrameCounts.nameOf(count))] = std::to_string(sum);
     }
-    const FrameRecord* record = lane.record(lane.frame);
+    const FrameRecord* record = track.record(track.frame);
     values[name + "pairs"] = record ? std::to_string(record->counts[FrameCount::pairs]) : "";
     if (const auto span = session.timeline.span()) {
-      const auto of = statisticsOf(lane.curves.pairs, lane.curves.disturbed, *span);
+      const auto of = statisticsOf(track.curves.pairs, track.curves.disturbed, *span);
       values[name + "span_frames"] = std::to_string(of.values.size() + of.disturbed);
     }
   }
@@ -145,7 +145,7 @@ std::string presenceText(const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
   if (bodies.empty() || !snapshot || bodies.front() >= snapshot->boxes->size()) return "";
   if (!isEmpty((*snapshot->boxes)[bodies.front()])) return "present";
-  return snapshot->tracks.empty() ? "absent" : absenceText(snapshot->tracks.front());
+  return snapshot->trails.empty() ? "absent" : absenceText(snapshot->trails.front());
 }
 
 /// Of the two selected bodies, if there are two.
@@ -159,12 +159,12 @@ void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const AxisRelation relation = relationOn(axis, a, b);
     values[fmt::format("pair.gap.{}", kAxes[axis])] = fmt::format("{}", relation.gap);
-    values[fmt::format("pair.relation.{}", kAxes[axis])] = kRelations.nameOf(relation.kind);
+    values[fmt::format("pair.relation.{}", kAxes[axis])] = kRelations.nameOf(relation.type);
   }
   values["pair.axis"] = kAxes[decidingAxis(a, b)];
   values["pair.overlaps"] = yes(overlaps(a, b));
   values["pair.history"] =
-      snapshot->tracks.size() == 2 ? std::to_string(snapshot->tracks[0].boxes.size()) : "0";
+      snapshot->trails.size() == 2 ? std::to_string(snapshot->trails[0].boxes.size()) : "0";
 }
 
 Values valuesOf(Session& session, const RunProgress& progress) {
@@ -178,40 +178,41 @@ Values valuesOf(Session& session, const RunProgress& progress) {
       session.playback.achieved() ? fmt::format("{:.1f}", *session.playback.achieved()) : "";
   values["loop"] = yes(session.playback.loop);
   values["speed"] = fmt::format("{:g}", session.playback.frames_per_second);
-  values["source"] = sourceText(progress.footage.get());
-  values["title"] = progress.footage ? progress.footage->title : "";
+  values["source"] = sourceText(progress.source.get());
+  values["title"] = progress.source ? progress.source->title : "";
   values["scene"] = progress.scene.name;
   values["object_type"] = progress.scene.object_type;
-  values["lanes"] = std::to_string(session.lanes.list.size());
+  values["algorithms"] = std::to_string(session.tracks.list.size());
   values["selection"] = fmt::format("{}", session.selection.bodies().size());
-  values["colouring"] = std::to_string(session.view.colouring);
-  values["hide_free"] = yes(session.view.hide_free);
-  values["pair_lines"] = yes(session.view.pair_lines);
+  values["colouring"] = std::to_string(session.display.colouring);
+  values["hide_free"] = yes(session.display.hide_free);
+  values["pair_lines"] = yes(session.display.pair_lines);
   values["check"] = yes(session.mismatches.check);
   values["stop_frame"] = progress.stop ? std::to_string(progress.stop->frame) : "";
   values["error"] = session.notices.errors.empty() ? "" : session.notices.errors.front();
   values["status"] = session.notices.status.text;
   for (const auto& [name, value] : parameterValues(session.draft.scene()))
     values["scene." + name] = value;
-  for (const auto& [name, value] : sceneParametersOf(session.playback.footage().get()))
+  for (const auto& [name, value] : sceneParametersOf(session.playback.source().get()))
     values["open." + name] = value;
-  for (LaneEdit& lane : session.lanes.list) {
-    for (const auto& [name, value] : parameterValues(*lane.parameters)) {
-      values[fmt::format("lane.{}.{}", lane.run.algorithm.id, name)] = value;
+  for (TrackEdit& track : session.tracks.list) {
+    for (const auto& [name, value] : parameterValues(*track.parameters)) {
+      values[fmt::format("algorithm.{}.{}", track.test_case.algorithm.id, name)] = value;
     }
-    values[fmt::format("lane.{}.threads", lane.run.algorithm.id)] =
-        std::to_string(lane.run.threads);
-    values[fmt::format("lane.{}.isa", lane.run.algorithm.id)] = isaName(lane.run.isa);
+    values[fmt::format("algorithm.{}.threads", track.test_case.algorithm.id)] =
+        std::to_string(track.test_case.threads);
+    values[fmt::format("algorithm.{}.isa", track.test_case.algorithm.id)] =
+        isaName(track.test_case.isa);
   }
-  const LaneEdit* shown = session.lanes.find(session.lanes.shown());
-  values["shown_lane"] = shown != nullptr ? shown->run.algorithm.id : "";
+  const TrackEdit* shown = session.tracks.find(session.tracks.shown());
+  values["shown_algorithm"] = shown != nullptr ? shown->test_case.algorithm.id : "";
   addAuthored(values, session);
   for (const Job* const job : session.jobs.all()) {
     for (const auto& [name, value] : job->status().values) {
       values[fmt::format("{}.{}", job->value_prefix, name)] = value;
     }
   }
-  addLanes(values, session, progress);
+  addTracks(values, session, progress);
   addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
   addSecond(values, session, progress);
@@ -226,7 +227,8 @@ Values valuesOf(Session& session, const RunProgress& progress) {
 
 std::optional<std::string> Inspector::value(const std::string& name) {
   Values values;
-  session_.runs.look([&](const RunProgress& progress) { values = valuesOf(session_, progress); });
+  session_.runs.readProgress(
+      [&](const RunProgress& progress) { values = valuesOf(session_, progress); });
   values["panel.left"] = preferences_.tabs["left"];
   values["panel.right"] = preferences_.tabs["right"];
   values["panel.bottom"] = preferences_.tabs["bottom"];
@@ -248,7 +250,7 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["legend.cells"] = legendText(first.content().cell_legend);
   values["view.hands"] = first.hands().text();
   values["hidden"] = std::to_string(first.content().hiddenBodies());
-  values["letters.missing"] = std::to_string(ui_.letters.missing());
+  values["glyphs.missing"] = std::to_string(ui_.glyphs.missing());
   values["scale"] = fmt::format("{:g}", ui_.scale);
   values["layout"] =
       fmt::format("{:g} {:g} {:g}", preferences_.left, preferences_.right, preferences_.bottom);

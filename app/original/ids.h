@@ -18,7 +18,7 @@ struct OriginalId {
 /// All of them.
 std::span<const OriginalId> originalIds();
 
-/// The one of this name, or null.
+/// Finds an id by name; null if there is none.
 const OriginalId* findOriginalId(std::string_view name);
 
 }  // namespace broadmark

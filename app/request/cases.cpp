@@ -32,7 +32,7 @@ bool selects(const std::string& selector, const Algorithm& algorithm,
          ::strcasecmp(selector.c_str(), algorithm.family.c_str()) == 0;
 }
 
-/// A key of --param: the parameter, and whose.
+/// A key of --param: the parameter, and its algorithms.
 struct ParameterKey {
   std::string selector;  ///< of algorithms; "": of anything that has it
   std::string parameter;
@@ -81,10 +81,11 @@ void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
       selectAlgorithms({ownSelector(selector, known)}, known, "--param");
   std::vector<std::string> parameters;
   bool any = false;
-  for (const Case& run : cases) {
-    if (findAlgorithm(run.algorithm.id, named) == nullptr) continue;
+  for (const Case& test_case : cases) {
+    if (findAlgorithm(test_case.algorithm.id, named) == nullptr) continue;
     any = true;
-    std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(parameters));
+    std::ranges::move(parameterNames(*test_case.algorithm.create()),
+                      std::back_inserter(parameters));
   }
   if (!any) {
     throw InputError(
@@ -238,8 +239,8 @@ void requireUsedParameters(const ParameterValues& given, const std::vector<Case>
       requireUsedKey(key, cases, known);
     }
   }
-  for (const Case& run : cases) {
-    std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(names));
+  for (const Case& test_case : cases) {
+    std::ranges::move(parameterNames(*test_case.algorithm.create()), std::back_inserter(names));
   }
   requireKnownParameters(unqualified, std::move(names));
 }

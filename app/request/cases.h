@@ -31,11 +31,11 @@ std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selector
                                         const std::vector<Algorithm>& known,
                                         std::string_view option);
 
-/// Every selected algorithm with every instruction set and thread count that it heeds, each once;
-/// first those that are selected by an id of the original Broadmark. Of the parameters each takes
-/// those that it has, and those that name it ("kd:margin", "sap*:margin") before the others; of
-/// several values (sweep.h) each makes a case. The values are not checked. Throws InputError as
-/// above, and for a parameter that is set twice.
+/// All selected algorithms with all instruction sets and thread counts that they support, without
+/// duplicates; first those selected by an id of the original Broadmark. An algorithm gets the
+/// parameters that it has; a key that names it ("kd:margin", "sap*:margin") wins over others; every
+/// value of a list (sweep.h) makes a case. The values are not checked. Throws InputError as above,
+/// and for a parameter that is set twice.
 std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
                               const std::vector<Algorithm>& known);
 

@@ -23,6 +23,9 @@ constexpr FormerName kFormerNames[] = {
     {"duel", "--seconds", "--max-seconds"},
     {"duel", "--with", "--baseline-program"},
     {"script", "settled", "idle"},
+    {"script", "lane", "algorithm"},
+    {"script", "lanes", "algorithms"},
+    {"script", "shown_lane", "shown_algorithm"},
 };
 
 /// The present name; where it differs, one line says so, once.
@@ -56,7 +59,10 @@ std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments) 
 
 std::string currentOption(const std::string& option) { return currentName("", option); }
 
-std::string currentScriptWord(const std::string& word) { return currentName("script", word); }
+std::string currentScriptWord(const std::string& word) {
+  const std::size_t end = std::min(word.find('.'), word.size());
+  return currentName("script", word.substr(0, end)) + word.substr(end);
+}
 
 std::string currentParameterKey(const std::string& key) {
   const std::size_t colon = key.rfind(':');

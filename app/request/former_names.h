@@ -13,7 +13,7 @@ std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments);
 /// The present name of an option of the main command.
 std::string currentOption(const std::string& option);
 
-/// The present form of a word of a script.
+/// The present form of a word of a script, or of a value's name with its first part ("lane.sap").
 std::string currentScriptWord(const std::string& word);
 
 /// The key of --param, [ALGORITHM:]NAME, with the present name of the parameter.

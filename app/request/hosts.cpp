@@ -20,10 +20,10 @@ ExecutorFactory hostMaker(const HostOptions& options) {
       .memory_limit_bytes =
           limit ? static_cast<std::uint64_t>(*limit * kGibibyte) : machineMemory(),
       .pin = options.pin};
-  return [worker](const Case& run, CancelQuery cancelled) {
+  return [worker](const Case& test_case, CancelQuery cancelled) {
     WorkerOptions own = worker;
     own.cancelled = std::move(cancelled);
-    return makeWorkerProcess(run, std::move(own));
+    return makeWorkerProcess(test_case, std::move(own));
   };
 }
 

@@ -118,8 +118,8 @@ void requireValid(const std::string& file, std::string_view kind, std::string_vi
                      other->empty() ? "built in" : "of " + *other));
 }
 
-/// Throws InputError for an engine that cannot be chosen or made, or whose parameters would hide
-/// those of a scene.
+/// Throws InputError for an engine that cannot be chosen or made, or with a parameter that would
+/// hide a parameter of a scene.
 void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
   constexpr std::string_view kKind = "engine";
   const std::string& id = engine.listing.id;

@@ -23,12 +23,12 @@ std::vector<SdkPlugin> sdkPlugins();
 
 /// The built-in algorithms, then those of the libraries in these files (see broadmark/plugin.h),
 /// which stay loaded until the program ends. Throws InputError for a file that is not such a
-/// library, was built with other headers, or has an algorithm whose id is unfit or already taken.
+/// library, was built with other headers, or has an algorithm with an invalid or duplicate id.
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins);
 
 /// Adds the engines of these libraries to the available ones (see broadmark/scenes/engine_plugin.h)
-/// for the rest of the process. Throws InputError likewise, and for an engine with a parameter that
-/// a scene has, too.
+/// for the rest of the process. Throws InputError like availableAlgorithms(), and for an engine
+/// with a parameter that a scene has, too.
 void addEnginesOf(const std::vector<std::string>& plugins);
 
 }  // namespace broadmark

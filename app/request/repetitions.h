@@ -18,7 +18,7 @@ struct RepetitionOptions {
   int warmup = 0;              ///< unmeasured repetitions before
   int most = 1;                ///< and fewest, unless:
   bool until_precise = false;  ///< a case is repeated until its mean is known well enough
-  double precision = 0.02;     ///< width of the mean's interval, as a share of it
+  double precision = 0.02;     ///< relative width of the mean's interval
   double max_seconds = 300;    ///< of a recording
   std::uint64_t order_seed = 1;
 
@@ -43,8 +43,8 @@ class RepetitionRule {
   Clock::time_point begin_ = Clock::now();
 };
 
-/// The order in which cases take turns: at first their own. What one leaves behind, such as a warm
-/// processor, is not to hit the same one every time.
+/// The interleaving order of cases: at first as given, then shuffled, so that the after-effects of
+/// a case, such as a warm processor, do not always hit the same successor.
 class TurnOrder {
  public:
   TurnOrder(std::size_t cases, std::uint64_t seed);

@@ -57,8 +57,8 @@ std::vector<ParameterValues> combinations(Parametrised& object, const ParameterV
   std::vector<ParameterValues> all = {texts};
   for (const auto& [name, values] : several) {
     std::vector<ParameterValues> longer;
-    for (const ParameterValues& one : all) {
-      for (const std::string& value : values) longer.emplace_back(one)[name] = value;
+    for (const ParameterValues& shorter : all) {
+      for (const std::string& value : values) longer.emplace_back(shorter)[name] = value;
     }
     all = std::move(longer);
   }

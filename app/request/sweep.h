@@ -12,7 +12,7 @@ namespace broadmark {
 std::vector<std::string> splitList(const std::vector<std::string>& texts);
 
 /// The values in `text`, separated by commas, each once: numbers by size, all else in the order
-/// given. A text without any is one value, for whoever checks values to complain about.
+/// given. A text without any comma is a single value; callers check values.
 std::vector<std::string> valuesIn(const std::string& text);
 
 /// Every combination of the values that `texts` hold; the last name varies fastest. A parameter

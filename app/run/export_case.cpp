@@ -43,30 +43,31 @@ void requireExportable(const fs::path& file, const fs::path& original, const Sce
   AtomicFile probe(file);
 }
 
-std::string reproducingCommand(const Case& run, const fs::path& recording) {
+std::string reproducingCommand(const Case& test_case, const fs::path& recording) {
   std::string command = "broadmark --headless " + pathWord(recording);
   const auto add = [&](std::string_view option, const std::string& word) {
     command += fmt::format(" {} {}", option, word);
   };
-  const Algorithm& algorithm = run.algorithm;
+  const Algorithm& algorithm = test_case.algorithm;
   if (!algorithm.plugin.empty()) add("--plugin", pathWord(algorithm.plugin));
   add("--algorithm", shellQuoted(algorithm.id));
-  if (algorithm.traits.vectorised) add("--isa", std::string(isaName(run.isa)));
-  if (algorithm.traits.parallel) add("--threads", fmt::format("{}", run.threads));
-  if (!run.device.empty()) add("--device", shellQuoted(run.device));
-  if (run.answer != AnswerKind::pairs) {
-    add("--answer", std::string(kAnswerKinds.nameOf(run.answer)));
+  if (algorithm.traits.vectorised) add("--isa", std::string(isaName(test_case.isa)));
+  if (algorithm.traits.parallel) add("--threads", fmt::format("{}", test_case.threads));
+  if (!test_case.device.empty()) add("--device", shellQuoted(test_case.device));
+  if (test_case.answer != AnswerKind::pairs) {
+    add("--answer", std::string(kAnswerKinds.nameOf(test_case.answer)));
   }
-  for (const auto& [key, value] : run.parameters)
+  for (const auto& [key, value] : test_case.parameters)
     add("--param", shellQuoted(fmt::format("{}={}", key, value)));
   add("--check", "full");
   return command;
 }
 
-std::string torturingCommand(const Case& run, const fs::path& recording) {
-  const std::string plugin = run.algorithm.plugin.empty() ? "" : run.algorithm.plugin + ":";
+std::string torturingCommand(const Case& test_case, const fs::path& recording) {
+  const std::string plugin =
+      test_case.algorithm.plugin.empty() ? "" : test_case.algorithm.plugin + ":";
   return fmt::format("broadmark torture {} --only-sources --case {} --rounds 1 --output {}",
-                     pathWord(recording), shellQuoted(plugin + caseName(run)),
+                     pathWord(recording), shellQuoted(plugin + caseName(test_case)),
                      pathWord(recording.parent_path() / "again"));
 }
 
@@ -81,12 +82,12 @@ int runExportCase(Plan plan, const fs::path& file, bool quiet) {
   const InterruptGuard guard;
   const auto recording = openForCommand(entry.source, quiet);
 
-  const Case& run = entry.cases.front();
+  const Case& test_case = entry.cases.front();
   const SceneInfo& whole = recording->scene();
   const std::uint64_t size = std::uint64_t{whole.objects} * difference->frame;
   Progress progress("shrinking " + whole.name, size, quiet);
   const ShrunkCase shrunk = shrinkCase(
-      run, *recording, *difference,
+      test_case, *recording, *difference,
       {.progress =
            [&](const ShrinkProgress& now) {
              progress.detail(extentText(now.bodies, now.frames));
@@ -100,7 +101,7 @@ int runExportCase(Plan plan, const fs::path& file, bool quiet) {
   writePart(file, *recording, shrunk.part);
   progress.print(summaryOf(shrunk, whole));
   progress.print("written: " + file.string());
-  progress.print(reproducingCommand(run, file));
+  progress.print(reproducingCommand(test_case, file));
   if (!shrunk.minimal) throw Interrupted("the smallest part so far is written");
   return 0;
 }

@@ -100,7 +100,7 @@ fs::path oneName(const fs::path& path) {
 void requireWritable(const Plan& plan) {
   std::map<fs::path, std::string> taken;
   for (const PlanEntry& entry : plan.entries) {
-    // This is named by a file, not by who runs it.
+    // The file, not the user, names this path.
     if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
     const Source& source = entry.source;
     const fs::path file =

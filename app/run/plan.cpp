@@ -17,7 +17,7 @@
 namespace broadmark {
 namespace {
 
-/// Opens one source; its entries still have only cases of their own.
+/// Opens a source; its entries get the plan's cases later.
 void addSource(Plan& plan, const std::string& name, PlanUse use) {
   const RunRequest& request = plan.request;
   OpenedSource opened = openSource(name, {.scene = request.scene,

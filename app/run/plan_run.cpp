@@ -1,4 +1,4 @@
-// Recordings are taken one after the other. On each, repetitions of different cases are
+// Recordings run one after the other. The repetitions of the cases of a recording are
 // interleaved, so that a disturbance of the machine hits all of them alike. Result files are
 // rewritten (each time atomically) after every recording: whatever ends the run, finished cases are
 // kept.

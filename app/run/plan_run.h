@@ -13,7 +13,7 @@
 namespace broadmark {
 
 /// Callbacks for a running plan, made by the thread that runs it. The cases of a recording are a
-/// task of one step per frame, whose detail is the algorithm.
+/// task with a step per frame; its detail is the algorithm.
 class RunObserver : public TaskObserver {
  public:
   /// A case will not be run any more.

@@ -16,7 +16,7 @@ namespace broadmark {
 void writeResults(const ResultPaths& paths, const Results& results);
 
 /// Keeps files of results up to date while a run goes on. Those made of lines get each case as soon
-/// as it is done, on the disc; the others are written anew, each time atomically, when a recording
+/// as it is done, on the disc; the others are replaced atomically when a recording
 /// is done, or, to standard output, once at the end. Without any case all files stay as they were.
 /// Every method throws InputError when a file cannot be written.
 class ResultFiles {

@@ -16,8 +16,8 @@ constexpr std::chrono::milliseconds kWatchTime{100};
 RunWarnings::RunWarnings(const Environment& environment)
     : environment_(environment), machine_(watchMachine(kWatchTime)) {}
 
-std::vector<std::string> RunWarnings::of(const Case& run) {
-  std::vector<std::string> warnings = noiseWarnings(environment_, machine_, run);
+std::vector<std::string> RunWarnings::of(const Case& test_case) {
+  std::vector<std::string> warnings = noiseWarnings(environment_, machine_, test_case);
   for (const std::string& warning : warnings) {
     if (said_.insert(warning).second) std::cerr << fmt::format("broadmark: warning: {}\n", warning);
   }

@@ -11,8 +11,8 @@
 
 namespace broadmark {
 
-/// Says each warning once, a line each on standard error, even with --quiet: times are not to be
-/// trusted unawares.
+/// Prints warnings on standard error, without duplicates and even with --quiet, as they cast doubt
+/// on measured times.
 class RunWarnings {
  public:
   /// Watches the machine for a moment, as others use it: before our own work begins. `environment`
@@ -20,7 +20,7 @@ class RunWarnings {
   explicit RunWarnings(const Environment& environment);
 
   /// Those that concern a case. The ones that have not been said are said now.
-  std::vector<std::string> of(const Case& run);
+  std::vector<std::string> of(const Case& test_case);
 
  private:
   const Environment& environment_;

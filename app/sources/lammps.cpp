@@ -40,21 +40,21 @@ ParticleColumns columnsOf(const LineReader& lines, const std::vector<std::string
     columns.radius = find("diameter");
     columns.is_diameter = columns.radius.has_value();
   }
-  struct Kind {
+  struct CoordinateColumns {
     std::array<std::string_view, 3> names;
     bool scaled;
   };
-  constexpr Kind kKinds[] = {{{"x", "y", "z"}, false},
-                             {{"xu", "yu", "zu"}, false},
-                             {{"xs", "ys", "zs"}, true},
-                             {{"xsu", "ysu", "zsu"}, true}};
-  for (const Kind& kind : kKinds) {
-    const auto x = find(kind.names[0]);
-    const auto y = find(kind.names[1]);
-    const auto z = find(kind.names[2]);
+  constexpr CoordinateColumns kColumns[] = {{{"x", "y", "z"}, false},
+                                            {{"xu", "yu", "zu"}, false},
+                                            {{"xs", "ys", "zs"}, true},
+                                            {{"xsu", "ysu", "zsu"}, true}};
+  for (const CoordinateColumns& coordinates : kColumns) {
+    const auto x = find(coordinates.names[0]);
+    const auto y = find(coordinates.names[1]);
+    const auto z = find(coordinates.names[2]);
     if (!x || !y || !z) continue;
     columns.position = {*x, *y, *z};
-    if (!kind.scaled) return columns;
+    if (!coordinates.scaled) return columns;
     if (!head.bounds || head.slanted) {
       lines.fail("scaled positions need a cuboid box ('ITEM: BOX BOUNDS'): dump x y z");
     }

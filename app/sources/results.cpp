@@ -109,10 +109,11 @@ InputError missingCase(const Results& results, const fs::path& results_file) {
 PlanEntry entryOf(const CaseResult& result, const fs::path& results_file,
                   const std::vector<Algorithm>& algorithms) {
   const Algorithm& algorithm = algorithmOf(result, algorithms);
-  const Case run = makeCase(algorithm, result.isa, result.threads, result.device,
-                            changedValues(result.parameters, *algorithm.create()), result.answer);
+  const Case test_case =
+      makeCase(algorithm, result.isa, result.threads, result.device,
+               changedValues(result.parameters, *algorithm.create()), result.answer);
   return {.source = sourceOf(result.recording, results_file),
-          .cases = {run},
+          .cases = {test_case},
           .original = {},
           .known = result};
 }

@@ -123,10 +123,10 @@ std::string importKindsText() {
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
   for (const auto& [name, value] : options.stated()) {
-    const auto heeds = [&, key = name](const PlanEntry& entry) {
+    const auto uses = [&, key = name](const PlanEntry& entry) {
       return entry.source.reference.reading.contains(key);
     };
-    if (entries.empty() || std::ranges::any_of(entries, heeds)) continue;
+    if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(
         fmt::format("{}: no source here has a use for it: leave it out", parameterOption(name)));
   }

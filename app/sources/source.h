@@ -85,7 +85,7 @@ struct OpeningOptions {
 /// How files of other programs are read. Several of them are a sequence.
 struct FileImport {
   std::vector<std::string> extensions;  ///< in lower case: ".csv"
-  std::vector<std::string> options;     ///< those of ReadingOptions that it heeds
+  std::vector<std::string> options;     ///< names of the ReadingOptions that it uses
   /// Throws InputError.
   std::unique_ptr<IndexedFrames> (*open)(const std::vector<std::filesystem::path>&,
                                          const ReadingOptions&);
@@ -114,7 +114,7 @@ std::optional<FileImport> importOf(const std::string& name);
 /// The kinds of files that can be imported, for help and messages.
 std::string importKindsText();
 
-/// Throws InputError for a reading option that none of these sources heeds.
+/// Throws InputError for a reading option that none of these sources uses.
 void requireReadingUsed(ReadingOptions, const std::vector<PlanEntry>&);
 
 }  // namespace broadmark

@@ -47,7 +47,7 @@ std::vector<std::string> environment(
   return all;
 }
 
-/// A process in a group of its own, whose outputs both go to `output`.
+/// Starts a process in a group of its own, with both outputs redirected to `output`.
 pid_t spawn(std::vector<std::string> command, std::vector<std::string> environment, int output) {
   posix_spawn_file_actions_t actions{};
   posix_spawnattr_t attributes{};
@@ -77,7 +77,7 @@ int statusOf(pid_t pid) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// What is printed until nobody can print any more; nothing when it was cancelled before.
+/// Reads until all writers have closed the pipe; nothing when cancelled before that.
 std::optional<std::string> readAll(const FileDescriptor& from, const CancelQuery& cancelled) {
   std::string printed;
   std::array<char, 4096> buffer{};
@@ -127,7 +127,7 @@ void openByDesktop(const fs::path& file) {
     throw InputError(
         fmt::format("{}: scripts may not open files with other programs", file.string()));
   }
-  // In a session of its own it outlives this program, and nobody waits for it.
+  // A session of its own: the child outlives this program and is not waited for.
   const FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));
   const pid_t pid = spawn({"setsid", "--fork", "xdg-open", fs::absolute(file).string()},
                           environment({}), nowhere.get());

@@ -31,7 +31,8 @@ inline constexpr NameTable kExitStatuses{
      {exit_status::timeout, "a case crossed a time limit"},
      {exit_status::interrupted, "interrupted (Ctrl-C)"}}};
 
-/// How a command ends whose cases have these statuses. A case that cannot run here is no failure.
+/// Exit status of a command with these statuses of cases. A case that cannot run here is no
+/// failure.
 inline int exitStatusOf(std::span<const Status> statuses) {
   const auto any = [&](Status status) {
     return std::ranges::find(statuses, status) != statuses.end();

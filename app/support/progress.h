@@ -19,7 +19,7 @@ class TaskObserver {
 
   /// Asked between steps; true ends the work.
   virtual bool cancelled() = 0;
-  /// A task of so many steps begins, as the one before has ended.
+  /// A task with this number of steps starts; the previous task has ended.
   virtual void onTaskStart(const std::string& task, std::uint64_t steps) = 0;
   /// `done` of its steps are done; `detail` names the present one.
   virtual void onProgress(std::uint64_t done, const std::string& detail = {}) = 0;
@@ -68,7 +68,7 @@ class Progress {
   Clock::time_point drawn_ = start_;
 };
 
-/// Shows one task after the other as Progress; Ctrl-C (InterruptGuard) ends them.
+/// Shows successive tasks as Progress; Ctrl-C (InterruptGuard) ends them.
 template <class Observer = TaskObserver>
 class TerminalTasks : public Observer {
  public:

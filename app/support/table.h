@@ -18,11 +18,10 @@ std::string cellText(const CaseColumn&, const CaseResult&, const Summary&,
 /// The cases of one recording, sorted by their medians, the fastest right one marked.
 std::string formatTable(std::span<const CaseResult>);
 
-/// Lines of lists have at most so many characters, if their words allow it.
+/// Maximum width of lines in lists, unless a single word is longer.
 inline constexpr std::size_t kWidestLine = 100;
 
-/// A text whose first line begins in column `begun` and whose further lines in column `indent`,
-/// broken between words.
+/// Wraps a text between words: the first line starts in column `begun`, the others in `indent`.
 std::string wrapped(const std::string& text, std::size_t begun, std::size_t indent);
 
 enum class LastColumn { whole, wrapped };

@@ -23,9 +23,10 @@ std::string bytesText(std::uint64_t bytes) {
   return fmt::format("{:.3g} {}", size, kUnits[unit]);
 }
 
-std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
-  if (count == 1) return fmt::format("1 {}", one);
-  return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
+std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural) {
+  if (count == 1) return fmt::format("1 {}", singular);
+  return plural.empty() ? fmt::format("{} {}s", count, singular)
+                        : fmt::format("{} {}", count, plural);
 }
 
 std::vector<std::string> splitAt(char separator, std::string_view text) {

@@ -20,7 +20,7 @@ std::optional<double> numberIn(std::string_view text);
 std::string bytesText(std::uint64_t bytes);
 
 /// "1 case", "2 cases"; of "body" the plural is stated.
-std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
+std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural = {});
 
 /// Calls visit(part) for each part of the text between separators, empty ones included.
 template <class Visit>

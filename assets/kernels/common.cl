@@ -1,19 +1,19 @@
-// What all kernels share. Written for OpenCL C 1.2.
+// Common code of all kernels. Written for OpenCL C 1.2.
 //
-// BODIES_PER_ITEM  bodies that one work item takes, one after the other: hundreds on a CPU, whose
-//                  work items are cheap only by the group; 1 on a GPU
-// PAIRS_HELD       pairs that a work item keeps to itself before it takes room for all of them with
-//                  one atomic operation
-// LANES            sorted bodies that are tested at once: 16 on a CPU, whose work items have
-//                  vectors; 1 on a GPU, whose work items are the lanes
+// BODIES_PER_ITEM  bodies that a work item processes sequentially: hundreds on a CPU, where work
+//                  items are cheap only in groups; 1 on a GPU
+// PAIRS_HELD       pairs that a work item buffers before it reserves space for all of them with one
+//                  atomic operation
+// LANES            sorted bodies that are tested at once: 16 on a CPU, with vectors per work item;
+//                  1 on a GPU, with work items as lanes
 
-// A multiplication and an addition must round alike in every kernel: cells depend on it.
+// Multiplications and additions must round equally in every kernel: cells depend on it.
 #pragma OPENCL FP_CONTRACT OFF
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/// On a CPU, fetches a box that will be read PREFETCHED bodies later, at a place that the processor
-/// cannot predict. PoCL's prefetch() does nothing; its compiler has a builtin that works.
+/// On a CPU, prefetches a box that will be read PREFETCHED bodies later, at an unpredictable
+/// address. PoCL's prefetch() does nothing; its compiler has a builtin that works.
 #define PREFETCHED 24u
 #if LANES == 1
 #define PREFETCH(box)
@@ -29,13 +29,13 @@
             end_ = min(i + (uint)BODIES_PER_ITEM, (uint)(n));                \
        i < end_; ++i)
 
-/// A box: its lower and its upper corner; the fourth components are free for use.
+/// A box: its lower and its upper corner; the fourth components are available for other data.
 typedef struct {
   float4 low;
   float4 high;
 } Box;
 
-/// After the last sorted body there is room for a vector of bodies that meet nothing.
+/// Padding after the last sorted body: a vector of bodies that overlap nothing.
 #define PADDING 16u
 
 /// Sorted boxes are six arrays of `stride` floats: lower and upper bounds on the first axis, on the
@@ -54,7 +54,7 @@ static inline void put_sorted(__global float* sorted, uint stride, uint i, float
 typedef int16 Lanes;
 #define LOAD_LANES(from) vload16(0, from)
 
-/// The lanes or'ed together. In this form compilers see a reduction; in any() they do not.
+/// The lanes or'ed together. Compilers recognise this form as a reduction, but not any().
 static inline uint folded(int16 lanes) {
   const int8 eight = lanes.lo | lanes.hi;
   const int4 four = eight.lo | eight.hi;
@@ -74,28 +74,28 @@ typedef int Lanes;
 static inline uint bits_of(int lane) { return lane != 0; }
 #endif
 
-/// Which of LANES sorted bodies meet [low, high] on one axis: `lows` points to the first one's
-/// lower bound.
+/// The lanes of LANES sorted bodies that overlap [low, high] on one axis: `lows` points to the
+/// first body's lower bound.
 static inline Lanes reach(__global const float* lows, uint stride, float low, float high) {
   return (LOAD_LANES(lows) <= high) & (low <= LOAD_LANES(lows + stride));
 }
 
-/// For bodies `block` ... of which bit k of `hits` stands for the k-th: those before `end`, as j.
+/// Iterates over bodies `block` ... before `end`, as j; bit k of `hits` stands for the k-th.
 #define FOR_EACH_HIT(j, hits, block, end)                                             \
   for (uint left_ = (end) - (block) < LANES ? (hits) & ((1u << ((end) - (block))) - 1) : (hits), \
             j = (block) + 31 - clz(left_);                                            \
        left_ != 0; left_ ^= 1u << (j - (block)), j = (block) + 31 - clz(left_))
 
 /// Closed intersection: touching counts.
-static inline int meet(float4 a_low, float4 a_high, float4 b_low, float4 b_high) {
+static inline int overlap(float4 a_low, float4 a_high, float4 b_low, float4 b_high) {
   return (a_low.x <= b_high.x) & (b_low.x <= a_high.x) & (a_low.y <= b_high.y) &
          (b_low.y <= a_high.y) & (a_low.z <= b_high.z) & (b_low.z <= a_high.z);
 }
 
 /// Counting stops about here: 32 bits must not wrap around.
-#define MOST_PAIRS 0x80000000u
+#define MAX_PAIRS 0x80000000u
 
-/// Where a work item puts the pairs that it finds. Those that do not fit are only counted.
+/// The output of a work item. Pairs beyond the capacity are only counted.
 typedef struct {
   __global uint2* pairs;
   volatile __global uint* count;
@@ -105,7 +105,7 @@ typedef struct {
 } Sink;
 
 static inline void flush(Sink* sink) {
-  if (sink->held == 0 || *sink->count > MOST_PAIRS) return;  // race: an older count is also right
+  if (sink->held == 0 || *sink->count > MAX_PAIRS) return;  // race: an old count is right, too
   const uint at = atomic_add(sink->count, sink->held);
   for (uint k = 0; k < sink->held && at + k < sink->capacity; ++k) {
     sink->pairs[at + k] = sink->buffer[k];
@@ -118,7 +118,7 @@ static inline void report(Sink* sink, uint a, uint b) {
   if (sink->held < PAIRS_HELD) sink->buffer[sink->held++] = (uint2)(min(a, b), max(a, b));
 }
 
-/// For searching kernels: a sink of the arguments `pairs`, `count` and `capacity`.
+/// For search kernels: a sink of the arguments `pairs`, `count` and `capacity`.
 #define MAKE_SINK(name) \
   Sink name;            \
   name.pairs = pairs;   \

@@ -1,17 +1,17 @@
-// Hierarchical grid: on level l bodies reach no farther than 2^l units, and cells have edges of
-// 2^(l + edge) units. A body lives on the finest level that it fits, in the one cell of its
-// lower corner. Whatever meets a box on a level has its lower corner between 2^l units before the
-// box and the box's end: in two cells per axis, or three if cells are as small as the units.
+// Hierarchical grid: bodies on level l extend over at most 2^l units, and cells have edges of 2^(l
+// + edge) units. A body is stored on the finest possible level, in the one cell of its lower
+// corner. A body that overlaps a box has its lower corner between 2^l units before the box and the
+// box's end: in two cells per axis, or three if cells are as small as the units.
 //
-// Coordinates become integers by a monotone function, so rounding and clamping cost no pair: if
+// Coordinates are quantised by a monotonic function, so rounding and clamping lose no pair: if
 // a.low <= b.high, then so are their units.
 //
-// Cells wrap around into a table of 2^bits buckets, neighbours along x side by side. So a bucket may
-// also hold bodies of other cells; a pair counts only in the cell that it was looked for in.
+// Cells wrap around into a table of 2^bits buckets, with neighbours along x contiguous. So a bucket
+// may also hold bodies of other cells; a pair counts only in the queried cell.
 
 #define LEVELS 21u
 
-/// How coordinates become cells, and cells buckets.
+/// The mapping of coordinates to cells, and of cells to buckets.
 typedef struct {
   float4 scale;   // units per length
   float4 origin;  // lower corner of all boxes, in units
@@ -36,7 +36,7 @@ static inline uint3 cell_of(uint3 low, uint level, Grid grid) {
 /// The bucket at the start of a row of cells along x.
 static inline uint row_of(uint y, uint z, uint level, Grid grid) {
   const uint y_part = y & ((1u << grid.bits.y) - 1);
-  // Levels begin at different places.
+  // Levels have different offsets.
   const uint z_part = (z + 37 * level) & ((1u << grid.bits.z) - 1);
   return (z_part << grid.bits.y | y_part) << grid.bits.x;
 }
@@ -53,11 +53,11 @@ __kernel void make_keys(__global const Box* boxes, const uint n, const Grid grid
     bodies[i] = i;
     used |= 1u << level;
   }
-  const uint known = *used_levels;  // race: bits are only added; an older set is also right
+  const uint known = *used_levels;  // race: bits are only added; an outdated set is correct, too
   if ((known & used) != used) atomic_or(used_levels, used);
 }
 
-/// Puts the boxes into the buckets' order, and notes where each bucket starts.
+/// Permutes the boxes into the buckets' order, and stores the start of each bucket.
 __kernel void gather(__global const Box* boxes, __global const uint* keys,
                      __global const uint* bodies, const uint n, const uint buckets,
                      const uint stride, __global float* sorted, __global uint* starts) {
@@ -96,8 +96,8 @@ static inline Box box_at(const Cells* cells, uint i) {
   return box;
 }
 
-/// What is looked for on one level: of the bodies in the cells from `first` to `last`, those from
-/// position `earliest` on that meet `box`.
+/// A query on one level: for the bodies in the cells from `first` to `last`, from index `earliest`
+/// on, that overlap `box`.
 typedef struct {
   Box box;
   uint number;
@@ -125,7 +125,7 @@ ALWAYS_INLINE void search_row(const Search* search, const Cells* cells, uint y, 
   const uint size = 1u << cells->grid.bits.x;
   const uint count = min(search->last.x - search->first.x + 1, size);
   __global const uint* starts = cells->starts + row_of(y, z, search->level, cells->grid);
-  for (uint done = 0; done < count;) {  // again if the row wraps around
+  for (uint done = 0; done < count;) {  // repeats if the row wraps around
     const uint from = (search->first.x + done) & (size - 1);
     const uint part = exact ? count : min(count - done, size - from);
     done += part;
@@ -143,7 +143,7 @@ ALWAYS_INLINE void search_row(const Search* search, const Cells* cells, uint y, 
   }
 }
 
-/// Looks for what meets body i, whose corners are in the units `low` and `high`, on one level.
+/// Finds the bodies that overlap body i, with corners in the units `low` and `high`, on one level.
 /// `ordered`: buckets are in the order of cells.
 ALWAYS_INLINE void search_level(const Cells* cells, uint i, Box box, uint3 low, uint3 high,
                                 uint level, int is_own, int ordered, int exact, Sink* sink) {
@@ -154,9 +154,9 @@ ALWAYS_INLINE void search_level(const Cells* cells, uint i, Box box, uint3 low, 
   search.level = level;
   search.first = cell_of(max(low, back) - back, level, cells->grid);
   search.last = cell_of(high, level, cells->grid);
-  // On their own level, the earlier one of two bodies looks for the later one.
+  // On their own level, the earlier of two bodies finds the later one.
   search.earliest = is_own ? i + 1 : 0;
-  // If in order, all in rows before its own one are earlier.
+  // If ordered, all bodies in rows before its own row are earlier.
   const uint3 begin = is_own && ordered ? cell_of(low, level, cells->grid) : search.first;
   for (uint z = begin.z; z <= search.last.z; ++z) {
     for (uint y = z == begin.z ? begin.y : search.first.y; y <= search.last.y; ++y) {
@@ -183,14 +183,14 @@ __kernel void search(__global const float* sorted, const uint stride, __global c
     const Box box = box_at(&cells, i);
     const uint3 low = unit_of(box.low, grid);
     const uint3 high = unit_of(box.high, grid);
-    if (exact) {  // bodies of about one size: the same, and much faster with so much known
+    if (exact) {  // bodies of similar size: the same, but much faster with these constants
       search_level(&cells, i, box, low, high, 0, 1, 1, 1, &sink);
       continue;
     }
     const uint own = level_of(low, high);
     for (uint level = own; used >> level != 0; ++level) {
       if ((used >> level & 1) == 0) continue;
-      // Coarser levels begin elsewhere in the table, and may wrap around.
+      // Coarser levels have other offsets in the table, and may wrap around.
       search_level(&cells, i, box, low, high, level, level == own, level == 0 && !wraps, 0, &sink);
     }
   }

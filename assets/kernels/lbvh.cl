@@ -1,5 +1,5 @@
 // Linear bounding volume hierarchy: bodies in the order of their centres along a Morton curve; a
-// binary radix tree over that order, all nodes at once; one traversal per body.
+// binary radix tree over that order, built for all nodes at once; one traversal per body.
 //
 //   make_keys, sort  order of the bodies
 //   gather           leaves: the boxes in that order
@@ -7,11 +7,11 @@
 //   build            each node by itself: its children, and their boxes from the ranges
 //   search
 //
-// A node covers a range of leaves, so its box needs no other node: no work group waits for what
-// another writes, which OpenCL 1.2 cannot order within a kernel.
+// A node covers a range of leaves, so its box depends on no other node: no work group waits for
+// another one's writes, which OpenCL 1.2 cannot order within a kernel.
 //
-// Inner node k has its two children's boxes side by side, in one cache line. In a child's box,
-// low.w is its number (leaves have the highest bit set) and high.w the last leaf below it.
+// Inner node k stores its two children's boxes contiguously, in one cache line. In a child's box,
+// low.w is its index (leaves have the highest bit set) and high.w the last leaf below it.
 
 #define LEAF 0x80000000u
 
@@ -19,7 +19,7 @@ typedef struct {
   Box child[2];
 } Node;
 
-/// Spreads ten bits out to every third place.
+/// Spreads ten bits out to every third position.
 static inline uint spread(uint x) {
   x = (x | x << 16) & 0x030000ffu;
   x = (x | x << 8) & 0x0300f00fu;
@@ -38,15 +38,15 @@ __kernel void make_keys(__global const Box* boxes, const uint n, const float4 lo
   }
 }
 
-/// Length of what two leaves' keys have in common from the left; equal keys go on with their
-/// positions. -1 for no such leaf.
+/// Length of the common prefix of two leaves' keys; equal keys are extended by their indices. -1
+/// for no such leaf.
 static inline int common_bits(__global const uint* keys, int n, int i, int j) {
   if (j < 0 || j >= n) return -1;
   const uint difference = keys[i] ^ keys[j];
   return difference != 0 ? (int)clz(difference) : 32 + (int)clz((uint)(i ^ j));
 }
 
-/// Puts the boxes into the leaves' order.
+/// Permutes the boxes into the leaves' order.
 __kernel void gather(__global const Box* boxes, __global const uint* bodies, const uint n,
                      __global Box* leaves) {
   FOR_EACH_BODY(i, n) {
@@ -55,7 +55,7 @@ __kernel void gather(__global const Box* boxes, __global const uint* bodies, con
   }
 }
 
-/// How many ranges of one level a range of the next level covers.
+/// Ranges of one level per range of the next level.
 #define ARITY 4u
 
 static inline void extend(Box* box, __global const Box* by) {
@@ -63,7 +63,7 @@ static inline void extend(Box* box, __global const Box* by) {
   box->high = fmax(box->high, by->high);
 }
 
-/// From the `count` ranges of one level, at `ranges` + `first`, to those of the next, behind them.
+/// Merges the `count` ranges of a level, at `ranges` + `first`, to those of the next, behind them.
 __kernel void merge_ranges(__global Box* ranges, const uint first, const uint count,
                            const uint merged_count) {
   FOR_EACH_BODY(i, merged_count) {
@@ -76,8 +76,8 @@ __kernel void merge_ranges(__global Box* ranges, const uint first, const uint co
 }
 
 /// Writes the child over the leaves [begin, end): its box is the union of the ranges, on each level
-/// at both ends, that no range of the next level covers whole. `inner` is its number if it is not a
-/// leaf.
+/// at both ends, that no range of the next level covers entirely. `inner` is its index unless it is
+/// a leaf.
 static inline void put_child(__global Box* child, __global const Box* ranges, uint n, uint begin,
                              uint end, uint inner) {
   const uint number = end - begin == 1 ? begin | LEAF : inner;
@@ -126,8 +126,8 @@ __kernel void build(__global const uint* keys, __global const Box* ranges, const
   }
 }
 
-/// The tree of n < 2^31 leaves is at most 30 + 31 deep: so many bits has a key with its position.
-#define DEEPEST 64
+/// The tree of n < 2^31 leaves has a depth of at most 30 + 31: the bits of a key with its index.
+#define MAX_DEPTH 64
 
 __kernel void search(__global const Box* leaves, __global const Node* nodes,
                      __global const uint* bodies, const uint n, __global uint2* pairs,
@@ -136,7 +136,7 @@ __kernel void search(__global const Box* leaves, __global const Node* nodes,
   FOR_EACH_BODY(i, n) {
     const float4 low = leaves[i].low;
     const float4 high = leaves[i].high;
-    uint stack[DEEPEST];
+    uint stack[MAX_DEPTH];
     int depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
@@ -144,7 +144,7 @@ __kernel void search(__global const Box* leaves, __global const Node* nodes,
       for (uint side = 0; side < 2; ++side) {
         const Box child = node->child[side];
         // Each pair is found by the earlier of its leaves.
-        if (as_uint(child.high.w) <= i || !meet(low, high, child.low, child.high)) continue;
+        if (as_uint(child.high.w) <= i || !overlap(low, high, child.low, child.high)) continue;
         const uint number = as_uint(child.low.w);
         if ((number & LEAF) != 0) {
           report(&sink, bodies[i], bodies[number & ~LEAF]);

@@ -1,7 +1,7 @@
 // Sweep and prune: bodies sorted by the lower bound on one axis; each is tested on the other two
-// against those that begin before it ends.
+// axes against the bodies that begin before it ends.
 
-/// Makes a float sort as an unsigned integer; -0 with +0.
+/// Maps a float to an unsigned integer of the same order; -0 equals +0.
 static inline uint sort_key(float value) {
   const uint bits = as_uint(value + 0.0f);
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
@@ -31,7 +31,7 @@ __kernel void gather(__global const Box* boxes, __global const uint* bodies, con
   }
 }
 
-/// The first position behind i whose lower bound is above `limit`: by doubling, then halving steps.
+/// The first index behind i with a lower bound above `limit`: exponential, then binary search.
 static inline uint window_end(__global const float* lows, uint i, uint n, float limit) {
   uint step = 1;
   uint inside = i;

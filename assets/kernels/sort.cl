@@ -1,12 +1,12 @@
 // Stable radix sort of 32-bit keys with 32-bit values, least significant digit first. A pass is
-// three kernels: count the digits of each block, turn the counts into places, scatter. Two ways:
+// three kernels: count the digits of each block, compute prefix sums, scatter. Two variants:
 //
-// serial_*  a work item takes a whole block, one element after the other: for a CPU
-// group_*   a work group takes a block of GROUP_BLOCK elements: for a GPU
+// serial_*  a work item processes a whole block sequentially: for a CPU
+// group_*   a work group processes a block of GROUP_BLOCK elements: for a GPU
 //
-// Counts stand digit by digit, and for each digit block by block.
+// Counts are ordered by digit, then by block.
 
-/// Most digits of a pass.
+/// Maximum number of digits in a pass.
 #define SERIAL_DIGITS 2048u
 
 __kernel void serial_count(__global const uint* keys, const uint n, const uint shift,
@@ -20,7 +20,7 @@ __kernel void serial_count(__global const uint* keys, const uint n, const uint s
   for (uint d = 0; d < digits; ++d) counts[d * blocks + block] = own[d];
 }
 
-/// Turns counts into places: each the sum of those before it. One work item.
+/// Exclusive prefix sums of the counts. One work item.
 __kernel void serial_places(__global uint* counts, const uint size) {
   uint sum = 0;
   for (uint i = 0; i < size; ++i) {
@@ -66,7 +66,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP_SIZE, 1, 1))) void group_coun
   if (item < GROUP_DIGITS) counts[item * get_num_groups(0) + get_group_id(0)] = own[item];
 }
 
-/// The sum of the values of the items before this one; all items of the group must call it.
+/// The exclusive prefix sum over the group's items; all items of the group must call it.
 static inline uint sum_before(uint value, __local uint* scratch) {
   const uint item = get_local_id(0);
   scratch[item] = value;
@@ -104,7 +104,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP_SIZE, 1, 1))) void group_scat
     __global const uint* keys, __global const uint* values, const uint n, const uint shift,
     __global const uint* places, __global uint* to_keys, __global uint* to_values) {
   __local uint scratch[GROUP_SIZE];
-  // How many elements of each digit the items before have.
+  // The number of elements of each digit in the items before.
   __local uint before[GROUP_DIGITS * GROUP_SIZE];
   const uint item = get_local_id(0);
   const uint begin = get_group_id(0) * GROUP_BLOCK + item * ITEM_BLOCK;

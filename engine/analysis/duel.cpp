@@ -19,10 +19,10 @@ using Clock = std::chrono::steady_clock;
 
 /// Minimum number of rounds.
 constexpr std::size_t kMinRounds = 60;
-/// After so many times more rounds the intervals are looked at again: they narrow with the root.
-constexpr double kNextLook = 1.3;
+/// Growth of the rounds before the next evaluation: intervals narrow with the root of the rounds.
+constexpr double kReviewGrowth = 1.3;
 
-/// All sides, by the median of the ratios to the first one.
+/// All sides, sorted by the median of their ratios to the first side.
 std::vector<std::size_t> fastestFirst(const DuelResult& result) {
   std::vector<double> medians;
   for (std::size_t side = 0; side < result.sides.size(); ++side) {
@@ -34,19 +34,19 @@ std::vector<std::size_t> fastestFirst(const DuelResult& result) {
   return sides;
 }
 
-std::vector<DuelPlace> ranking(const DuelResult& result) {
-  std::vector<DuelPlace> places;
+std::vector<DuelRank> ranking(const DuelResult& result) {
+  std::vector<DuelRank> ranking;
   for (const std::size_t side : fastestFirst(result)) {
-    places.push_back({.side = side, .ratio = {1, {1, 1}}});
-    if (side != 0) places.back().ratio = result.ratio(side, 0);
+    ranking.push_back({.side = side, .ratio = {1, {1, 1}}});
+    if (side != 0) ranking.back().ratio = result.ratio(side, 0);
   }
-  std::size_t first = 0;  // of the present place
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const Interval ratio = result.ratio(places[i].side, places[first].side).ci95;
+  std::size_t first = 0;  // of the present rank
+  for (std::size_t i = 1; i < ranking.size(); ++i) {
+    const Interval ratio = result.ratio(ranking[i].side, ranking[first].side).ci95;
     if (verdictOn(ratio, result.margin) == Verdict::slower) first = i;
-    places[i].place = first + 1;
+    ranking[i].rank = first + 1;
   }
-  return places;
+  return ranking;
 }
 
 class Duel {
@@ -57,7 +57,7 @@ class Duel {
     RunPolicy policy = RunPolicy::unlimited(options.check);
     for (const DuelSide& side : sides) {
       runs_.push_back(
-          std::make_unique<CaseRun>(side.run, policy, side.make_host, options.cancelled));
+          std::make_unique<CaseRun>(side.test_case, policy, side.make_host, options.cancelled));
       result_.sides.push_back({.name = side.name});
     }
   }
@@ -65,13 +65,13 @@ class Duel {
   DuelResult run(FrameSource& frames) {
     for (bool first = true; !ended_; first = false) {
       runPass(frames, first);
-      for (const auto& run : runs_) run->stopChecking();
+      for (const auto& case_run : runs_) case_run->stopChecking();
       if (frames.scene().frames == 0) ended_ = true;
     }
-    for (const auto& run : runs_) run->stop();
+    for (const auto& case_run : runs_) case_run->stop();
     result_.seconds = elapsed();
     result_.margin = 2 * options_.precision;
-    if (result_.ok() && result_.rounds() > 0) result_.places = ranking(result_);
+    if (result_.ok() && result_.rounds() > 0) result_.ranking = ranking(result_);
     return std::move(result_);
   }
 
@@ -80,7 +80,7 @@ class Duel {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
 
-  /// Calls act(side) in random order; ends the duel when that is false.
+  /// Calls act(side) in random order; ends the duel if act returns false.
   template <class Act>
   void takeTurns(Act&& act) {
     std::ranges::shuffle(order_, random_);
@@ -104,7 +104,7 @@ class Duel {
       if (!frame) return;
       runRound(*frame);
       if (!ended_ && checked) check(*frame);
-      if (!ended_) look();
+      if (!ended_) evaluate();
     }
   }
 
@@ -112,12 +112,12 @@ class Duel {
     std::vector<double> seconds(runs_.size());
     takeTurns([&](std::size_t side) {
       const bool running = runs_[side]->step(frame);
-      // A time below the clock's resolution must still have a ratio.
+      // The ratio is defined even below the clock's resolution.
       const auto ns = std::max<std::int64_t>(runs_[side]->times()[Phase::total], 1);
       seconds[side] = static_cast<double>(ns) * 1e-9;
       return running;
     });
-    if (ended_) return;  // a round counts when all have run
+    if (ended_) return;  // only complete rounds count
     for (std::size_t side = 0; side < seconds.size(); ++side) {
       result_.sides[side].seconds.push_back(seconds[side]);
     }
@@ -130,21 +130,21 @@ class Duel {
     });
   }
 
-  /// Whether to go on.
-  void look() {
+  /// Decides whether the duel ends.
+  void evaluate() {
     const std::size_t rounds = result_.rounds();
     result_.seconds = elapsed();
     if (options_.progress) options_.progress(result_);
     const bool time_is_up = result_.seconds >= options_.max_seconds;
-    if (rounds < next_look_ && !time_is_up) return;
-    next_look_ = static_cast<std::size_t>(static_cast<double>(rounds) * kNextLook) + 1;
+    if (rounds < next_review_ && !time_is_up) return;
+    next_review_ = static_cast<std::size_t>(static_cast<double>(rounds) * kReviewGrowth) + 1;
     const bool narrow = rounds >= kMinRounds && isNarrow();
-    // Twice in a row: an interval may be narrow by chance once.
+    // Twice in a row: a single narrow interval may be chance.
     result_.decided = std::exchange(was_narrow_, narrow) && narrow;
     ended_ = result_.decided || time_is_up;
   }
 
-  /// Whether every side's ratio to the next faster one is known well enough.
+  /// Whether the ratio of every side to the next faster one is precise enough.
   [[nodiscard]] bool isNarrow() const {
     const std::vector<std::size_t> sides = fastestFirst(result_);
     for (std::size_t i = 1; i < sides.size(); ++i) {
@@ -161,7 +161,7 @@ class Duel {
   Oracle oracle_;
   DuelResult result_;
   Clock::time_point begin_ = Clock::now();
-  std::size_t next_look_ = kMinRounds;
+  std::size_t next_review_ = kMinRounds;
   bool was_narrow_ = false;
   bool ended_ = false;
 };

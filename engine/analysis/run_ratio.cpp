@@ -1,4 +1,4 @@
-// Least times, and an interval around their ratio.
+// Minimum times, and an interval around their ratio.
 
 #include "broadmark/analysis/run_ratio.h"
 
@@ -11,9 +11,9 @@
 namespace broadmark {
 namespace {
 
-/// Fewer other cases do not tell how much runs differ, nor do fewer baselines. Half of an interval,
-/// as a logarithm, is then taken for it, since whole runs on shared machines differ by that, and
-/// another one where a side has a single repetition.
+/// Minimum number of other cases, or of baselines, to estimate the variation between runs. With
+/// fewer, half of the interval, as a logarithm, is assumed: whole runs on shared machines differ by
+/// that; a larger value where a side has a single repetition.
 constexpr std::size_t kMinOthers = 3;
 constexpr std::size_t kMinBaselines = 3;
 constexpr double kUnknownRunSpread = 0.08;
@@ -27,21 +27,21 @@ struct TimedRun {
 };
 
 TimedRun runOf(const CaseResult& result) {
-  TimedRun run;
+  TimedRun timed;
   for (const Repetition& repetition : result.repetitions) {
-    PassTimes& pass = run.passes.emplace_back();
+    PassTimes& pass = timed.passes.emplace_back();
     for (const FrameTimes& times : repetition.frames) {
-      // A time below the clock's resolution must still have a logarithm.
+      // The logarithm is defined even below the clock's resolution.
       pass.push_back(static_cast<double>(std::max<std::int64_t>(times[Phase::total], 1)) * 1e-9);
     }
   }
-  return run;
+  return timed;
 }
 
 std::vector<const PassTimes*> passesOf(std::span<const TimedRun> runs) {
   std::vector<const PassTimes*> passes;
-  for (const TimedRun& run : runs) {
-    for (const PassTimes& pass : run.passes) passes.push_back(&pass);
+  for (const TimedRun& timed : runs) {
+    for (const PassTimes& pass : timed.passes) passes.push_back(&pass);
   }
   return passes;
 }
@@ -52,8 +52,8 @@ std::size_t framesOf(std::span<const TimedRun> runs) {
   return frames == std::numeric_limits<std::size_t>::max() ? 0 : frames;
 }
 
-/// For each frame the least time to be expected of `drawn` of the passes: where one side has more
-/// passes than the other its least time would be less by chance.
+/// For each frame the expected minimum over `drawn` of the passes: the side with more passes would
+/// otherwise have a lower minimum by chance.
 std::vector<double> leastTimes(std::span<const TimedRun> runs, std::size_t frames,
                                std::size_t drawn) {
   const std::vector<const PassTimes*> passes = passesOf(runs);
@@ -65,7 +65,7 @@ std::vector<double> leastTimes(std::span<const TimedRun> runs, std::size_t frame
     std::ranges::transform(passes, times.begin(),
                            [&](const PassTimes* pass) { return (*pass)[frame]; });
     std::ranges::sort(times);
-    // The chance that the i-th is the least of those drawn.
+    // The probability that the i-th is the minimum of those drawn.
     double chance = few / count;
     for (std::size_t i = 0; i + drawn <= times.size(); ++i) {
       least[frame] += chance * times[i];
@@ -76,7 +76,7 @@ std::vector<double> leastTimes(std::span<const TimedRun> runs, std::size_t frame
   return least;
 }
 
-/// The logarithm of the mean of each frame's least time over some of the passes.
+/// The logarithm of the mean of each frame's minimum over the chosen passes.
 double levelOf(const std::vector<const PassTimes*>& passes, std::span<const std::size_t> chosen,
                std::size_t frames) {
   double sum = 0;
@@ -88,7 +88,7 @@ double levelOf(const std::vector<const PassTimes*>& passes, std::span<const std:
   return std::log(sum);
 }
 
-/// Variance of levelOf() all passes, from that of halves of them (McCarthy, 1969, "Pseudo-
+/// Variance of levelOf() all passes, estimated from halves of them (McCarthy, 1969, "Pseudo-
 /// replication: half samples"): a statistic of half of the values varies about its mean as that of
 /// all does about the truth. At least two passes.
 double varianceOfLevel(const std::vector<const PassTimes*>& passes, std::size_t frames) {
@@ -103,12 +103,12 @@ double varianceOfLevel(const std::vector<const PassTimes*>& passes, std::size_t 
     level = levelOf(passes, std::span(order).first(half), frames);
   }
   const double deviation = standardDeviation(levels);
-  // An odd one out makes the halves differ by more than that.
+  // With an odd number of passes the halves differ by more.
   return deviation * deviation * static_cast<double>(half) /
          static_cast<double>(passes.size() - half);
 }
 
-/// Noise from repetition to repetition of both sides: half of an interval, as a logarithm.
+/// Noise between repetitions of both sides: half of an interval, as a logarithm.
 double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRun> after,
                        std::size_t frames) {
   const std::vector<const PassTimes*> a = passesOf(before);
@@ -118,11 +118,11 @@ double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRu
   return studentT975(degrees) * std::sqrt(varianceOfLevel(a, frames) + varianceOfLevel(b, frames));
 }
 
-/// What one more run differs by from the mean of the baselines, likewise.
+/// Deviation of one further run from the mean of the baselines: half of an interval.
 double baselineSpread(std::span<const TimedRun> before, std::size_t frames) {
   std::vector<double> levels;
-  for (const TimedRun& run : before) {
-    const std::vector<const PassTimes*> passes = passesOf({&run, 1});
+  for (const TimedRun& timed : before) {
+    const std::vector<const PassTimes*> passes = passesOf({&timed, 1});
     std::vector<std::size_t> all(passes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     levels.push_back(levelOf(passes, all, frames));
@@ -131,7 +131,7 @@ double baselineSpread(std::span<const TimedRun> before, std::size_t frames) {
   return studentT975(runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
 }
 
-/// Noise from frame to frame: half of an interval of the sums' ratio, as a logarithm.
+/// Noise between frames: half of an interval of the sums' ratio, as a logarithm.
 double frameNoise(std::span<const double> before, std::span<const double> after) {
   const auto log_of = [&](std::span<const std::size_t> drawn) {
     double a = 0;
@@ -145,7 +145,7 @@ double frameNoise(std::span<const double> before, std::span<const double> after)
   std::vector<std::size_t> all(before.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const double estimate = log_of(all);
-  // What each frame does to the ratio.
+  // The influence of each frame on the ratio.
   std::vector<double> influence(before.size());
   std::ranges::transform(before, after, influence.begin(),
                          [&](double a, double b) { return b - std::exp(estimate) * a; });
@@ -154,14 +154,14 @@ double frameNoise(std::span<const double> before, std::span<const double> after)
   return (interval.high - interval.low) / 2;
 }
 
-/// A case by itself, without what the other cases tell. Ratio and noise are logarithms.
+/// A case in isolation from the other cases. Ratio and noise are logarithms.
 struct OwnRatio {
   double before = 0;  ///< seconds
   double after = 0;
   double ratio = 0;
   double noise = 0;        ///< within the runs: half of an interval
-  double spread = 0;       ///< from run to run: half of an interval
-  bool identical = false;  ///< the very same times in both runs
+  double spread = 0;       ///< between runs: half of an interval
+  bool identical = false;  ///< equal times in both runs
 };
 
 std::optional<OwnRatio> ownRatio(const PairedCase& paired) {
@@ -194,7 +194,7 @@ RunRatio ratioFrom(const OwnRatio& own, double drift, double half) {
           .drift = std::nullopt};
 }
 
-/// The cases of two runs, each by itself: nothing for those without times.
+/// The cases of two runs, each in isolation: nothing for cases without times.
 class OwnRatios {
  public:
   explicit OwnRatios(std::span<const PairedCase> cases) : cases_(cases) {
@@ -206,19 +206,19 @@ class OwnRatios {
     return ratios_[i];
   }
 
-  /// Median ratio of the other cases on the same recording, which took turns with this one, or of
-  /// all others where there are fewer than two of those. Nothing if there are no others.
+  /// Median ratio of the other cases on the same recording, which ran alternately with this one, or
+  /// of all others where those are fewer than two. Nothing without others.
   [[nodiscard]] std::optional<double> driftOf(std::size_t i) const { return drifts_[i]; }
 
-  /// Half of an interval of what the other cases' ratios differ from their drift by, which contains
-  /// the noise within their runs. Nothing if there are too few.
+  /// Half of an interval of the other cases' deviations from their drift, which includes the noise
+  /// within their runs. Nothing if there are too few.
   [[nodiscard]] std::optional<double> spreadWithout(std::size_t i) const {
     std::vector<double> deviations;
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
       if (j != i && ratios_[j]) deviations.push_back(std::abs(ratios_[j]->ratio - *drifts_[j]));
     }
     if (deviations.size() < kMinOthers) return std::nullopt;
-    constexpr double kSigmas = 1.4826;  // of a normal distribution, in its median deviation
+    constexpr double kSigmas = 1.4826;  // for a normal distribution, from the median deviation
     return studentT975(static_cast<double>(deviations.size() - 1)) * kSigmas *
            quantile(deviations, 0.5);
   }
@@ -262,7 +262,7 @@ std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> ca
     if (const std::optional<double> spread = own.spreadWithout(i)) {
       ratios[i] = ratioFrom(*own[i], *drift, std::max(own[i]->noise, *spread));
     } else {
-      // One or two others may have changed themselves: the ratio is their drift or this case's.
+      // One or two others may have changed themselves: the ratio may be their drift or this case's.
       ratios[i] = ratioFrom(
           *own[i], 0, std::hypot(own[i]->noise, own[i]->spread) + std::abs(drift.value_or(0)));
     }

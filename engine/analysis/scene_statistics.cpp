@@ -41,7 +41,7 @@ Changes meanOf(std::span<const Changes> frames) {
   return {sum.appeared / count, sum.vanished / count, sum.changed / count};
 }
 
-/// Bodies and pairs by layer, added up over frames.
+/// Bodies and pairs by layer, summed over frames.
 class FilterTally {
  public:
   explicit FilterTally(const CollisionFilter& filter) : filter_(filter) {}
@@ -192,7 +192,7 @@ RangeStatistics rangeStatistics(std::span<const FrameStatistics> frames) {
     range.max_outside = std::max(range.max_outside, frame.outside);
     range.min_bodies = std::min(range.min_bodies, frame.bodies);
     range.max_bodies = std::max(range.max_bodies, frame.bodies);
-    if (frame.bodies == 0) continue;  // nothing has a size there
+    if (frame.bodies == 0) continue;  // no extents to aggregate
     range.min_extent =
         medians.empty() ? frame.min_extent : std::min(range.min_extent, frame.min_extent);
     range.max_extent = std::max(range.max_extent, frame.max_extent);

@@ -21,7 +21,7 @@ void BoxArrays::resize(std::size_t size) {
     return (boxes + 2 * kPadding - 1) / kPadding * kPadding;
   };
   if (padded(size) > stride_) {
-    // Growing again by a little each time must not mean new memory each time.
+    // Grow geometrically, so that repeated small growth rarely reallocates.
     const std::size_t stride = std::max(padded(size), padded(stride_ + stride_ / 2));
     memory_.reset(static_cast<float*>(allocateLarge(kArrays * stride * sizeof(float))));
     stride_ = stride;

@@ -33,10 +33,10 @@ void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first,
 }
 
 void BoxBroadPhase::updateObjects(const Frame& frame) {
-  // Few boxes one by one, many in one go.
-  constexpr std::size_t kFew = 8;
+  // A small fraction of changed boxes is copied singly, otherwise all are copied.
+  constexpr std::size_t kMinUnchangedRatio = 8;
   if (!frame.changed || boxes_.size() != frame.boxes.size() ||
-      kFew * frame.changed->size() > boxes_.size()) {
+      kMinUnchangedRatio * frame.changed->size() > boxes_.size()) {
     boxes_.assign(frame.boxes.begin(), frame.boxes.end());
   } else {
     for (const std::uint32_t body : *frame.changed) boxes_[body] = frame.boxes[body];

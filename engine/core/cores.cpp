@@ -1,4 +1,4 @@
-// Asking Linux about the cores: sched_getaffinity, /proc/stat, /sys/devices/system/cpu.
+// Linux's view of the cores: sched_getaffinity, /proc/stat, /sys/devices/system/cpu.
 
 #include "broadmark/cores.h"
 
@@ -28,7 +28,7 @@ std::vector<int> coresOfList(std::istream& list) {
   return cores;
 }
 
-/// What speaks against a core, the worst first: one of its siblings is taken; other work beside it.
+/// Sort key of a core, worst criterion first: an SMT sibling is used; other work on the core.
 std::tuple<bool, double> disadvantage(int core, const std::vector<int>& taken,
                                       const BusyShares& busy, const CoreSiblings& siblings) {
   bool is_beside_taken = false;
@@ -37,7 +37,7 @@ std::tuple<bool, double> disadvantage(int core, const std::vector<int>& taken,
   if (beside != siblings.end()) {
     for (const int sibling : beside->second) {
       is_beside_taken |= std::ranges::find(taken, sibling) != taken.end();
-      work += busyShare(busy, sibling) / 2;  // it takes the units, not the time
+      work += busyShare(busy, sibling) / 2;  // a busy sibling shares units, not time
     }
   }
   return {is_beside_taken, work};
@@ -65,11 +65,11 @@ std::map<int, CoreTicks> coreTicks(const SystemFolders& folders) {
   std::map<int, CoreTicks> ticks;
   std::ifstream file(folders.proc / "stat");
   for (std::string line; std::getline(file, line) && line.starts_with("cpu");) {
-    if (line.starts_with("cpu ")) continue;  // the sum of all
+    if (line.starts_with("cpu ")) continue;  // the sum over all cores
     std::istringstream words(line.substr(3));
     int core = 0;
     words >> core;
-    // user, nice, system, idle, iowait, irq, softirq, steal; what follows is part of these.
+    // user, nice, system, idle, iowait, irq, softirq, steal; later fields are included in these.
     std::array<std::uint64_t, 8> kinds{};
     for (std::uint64_t& kind : kinds) words >> kind;
     const std::uint64_t idle = kinds[3] + kinds[4];
@@ -86,7 +86,7 @@ BusyShares busySharesBetween(const std::map<int, CoreTicks>& before,
     if (then == before.end()) continue;
     const auto busy = static_cast<double>(now.busy) - static_cast<double>(then->second.busy);
     const auto idle = static_cast<double>(now.idle) - static_cast<double>(then->second.idle);
-    // Ticks of waiting may also be taken back.
+    // Linux may decrease the waiting ticks.
     if (busy + idle > 0) shares[core] = std::clamp(busy / (busy + idle), 0.0, 1.0);
   }
   return shares;

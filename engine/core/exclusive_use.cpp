@@ -1,4 +1,4 @@
-// Named readers-writer locks in which a waiting writer lets no further reader pass.
+// Named readers-writer locks; a waiting writer blocks new readers.
 
 #include "broadmark/exclusive_use.h"
 
@@ -11,7 +11,7 @@
 namespace broadmark {
 
 struct NamedLock {
-  std::mutex door;  ///< held by a writer while it waits, and by everybody on the way in
+  std::mutex door;  ///< held by a waiting writer, and briefly by every thread that enters
   std::shared_mutex room;
 };
 

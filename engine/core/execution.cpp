@@ -13,23 +13,23 @@
 namespace broadmark {
 namespace {
 
-/// Spins before a waiting thread goes to sleep: about 20 µs, since a frame of a small scene is over
-/// in less than a wake-up takes. Pointless when threads outnumber the cores.
+/// Spins before a waiting thread sleeps: about 20 µs, since a frame of a small scene is shorter
+/// than a wake-up. Pointless when threads outnumber the cores.
 constexpr int kSpins = 2000;
 
-/// The same where work has been promised.
+/// The same after wake(), which announces work.
 constexpr int kHotSpinCount = 50'000;
 
-/// Tells the processor that this thread only waits.
+/// Hints to the processor that this thread spins.
 void pauseSpin() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #elif defined(__aarch64__)
-  __asm__ volatile("isb");  // takes about as long as a pause; "yield" takes no time
+  __asm__ volatile("isb");  // about as long as a pause; "yield" takes no time
 #endif
 }
 
-/// Waits until `value` is no longer `old`; returns what it is.
+/// Waits until `value` differs from `old`; returns the new value.
 template <class T>
 T awaitChange(const std::atomic<T>& value, T old, int spins) {
   for (int spin = 0; spin < spins; ++spin) {
@@ -41,7 +41,7 @@ T awaitChange(const std::atomic<T>& value, T old, int spins) {
   return value.load(std::memory_order_acquire);
 }
 
-/// Lets a thread use these cores only, but for one. Whether the system allowed it.
+/// Binds a thread to these cores except `but`. Returns whether the system allowed it.
 bool bind(pthread_t thread, std::span<const int> cores, int but = -1) {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -70,7 +70,7 @@ bool isaSupported(Isa isa) {
              __builtin_cpu_supports("bmi2") != 0;
 #elif defined(__aarch64__)
     case Isa::neon:
-      return true;  // part of every such processor
+      return true;  // part of the baseline
 #endif
     default:
       return false;
@@ -98,7 +98,7 @@ ThreadTeam::ThreadTeam(int size) : spins_(0) {
     for (int worker = 1; worker < size; ++worker) {
       threads_.emplace_back([this, worker] { loop(worker); });
     }
-  } catch (const std::system_error&) {  // the system grants no more of them
+  } catch (const std::system_error&) {  // the system grants no more threads
     stop();
     throw;
   }
@@ -121,8 +121,8 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
   return false;
 }
 
-/// In a virtual machine Linux often wakes a thread on the core of the one that wakes it, although
-/// another core is idle: then both share it for a frame.
+/// In a virtual machine Linux often wakes a thread on the core of the waking thread although
+/// another core is idle: then both share the core for a frame.
 void ThreadTeam::avoidCallerCore() {
   const int core = ::sched_getcpu();
   if (shared_cores_.empty() || core == callers_core_) return;
@@ -163,7 +163,7 @@ void ThreadTeam::start(Job job) {
     tell((generation_ | 1U) + 1);
   }
   perform(0);
-  const int spins = spins_ > 0 ? kHotSpinCount : 0;  // it ends soon, and to wake up takes long
+  const int spins = spins_ > 0 ? kHotSpinCount : 0;  // the wait is short, a wake-up long
   for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }

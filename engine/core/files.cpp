@@ -25,7 +25,7 @@ InputError failure(const std::filesystem::path& path, std::string_view what) {
   return InputError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 
-/// The result of a system call that is repeated when a signal came in between.
+/// Repeats a system call that a signal interrupted; returns its result.
 template <class Call>
 auto uninterrupted(Call&& call) {
   while (true) {
@@ -40,7 +40,7 @@ FileDescriptor opened(const std::filesystem::path& path, int flags) {
       uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, kEveryoneReads); }));
 }
 
-/// The target of a symbolic link: that is written, and the link stays.
+/// The target of a symbolic link: the target is written, and the link stays.
 std::filesystem::path throughLinks(std::filesystem::path path) {
   std::error_code failed;
   if (!std::filesystem::is_symlink(path, failed)) return path;
@@ -56,13 +56,13 @@ bool hasName(const FileDescriptor& file, const std::filesystem::path& path) {
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
-/// False if another process has the lock. A file system may know no locks.
+/// False if another process has the lock. True where the file system supports no locks.
 bool tryLock(const FileDescriptor& file) {
   return uninterrupted([&] { return ::flock(file.get(), LOCK_EX | LOCK_NB); }) == 0 ||
          errno != EWOULDBLOCK;
 }
 
-/// Opens `path`, which stands for the file `named`, and locks it.
+/// Opens and locks `path`, the partial file of `named`.
 FileDescriptor openLocked(const std::filesystem::path& path, const std::filesystem::path& named,
                           std::chrono::milliseconds patience) {
   const auto end = std::chrono::steady_clock::now() + patience;
@@ -78,18 +78,18 @@ FileDescriptor openLocked(const std::filesystem::path& path, const std::filesyst
     } else if (hasName(file, path)) {
       return file;
     }
-    // Between open and lock its writer has finished: it was the finished file, or is gone.
+    // Between open and lock another writer has renamed or removed the file.
   }
 }
 
-/// Returns whether it could be done. What is written next follows.
+/// Truncates the file and seeks to its new end. Returns whether that succeeded.
 bool cutFile(const FileDescriptor& file, std::uint64_t size) {
   const auto end = static_cast<off_t>(size);
   return uninterrupted([&] { return ::ftruncate(file.get(), end); }) == 0 &&
          ::lseek(file.get(), end, SEEK_SET) == end;
 }
 
-/// Waits until all is on the disc.
+/// Waits until all data are on the disc.
 void syncFile(const FileDescriptor& file, const std::filesystem::path& path) {
   if (uninterrupted([&] { return ::fsync(file.get()); }) != 0) throw failure(path, "cannot write");
 }
@@ -103,7 +103,7 @@ void requireRegular(const std::filesystem::path& path) {
   }
 }
 
-// Where this process may write; nothing: anywhere. Tasks in the background ask, too.
+// The only folder that this process may write to, if set. Read by background tasks, too.
 std::mutex sandbox_mutex;
 std::optional<std::filesystem::path> sandbox_folder;  ///< guarded by it
 
@@ -128,7 +128,7 @@ FileDescriptor unnamedFile() {
 }
 
 FileDescriptor openForReading(const std::filesystem::path& path) {
-  // A FIFO without a writer would block; on regular files O_NONBLOCK means nothing.
+  // A FIFO without a writer would block; on regular files O_NONBLOCK has no effect.
   FileDescriptor file = opened(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) throw failure(path, "cannot read");
@@ -167,7 +167,7 @@ std::size_t readAll(int fd, std::span<std::byte> bytes, std::uint64_t offset) {
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
   }
-  errno = 0;  // an interruption is none
+  errno = 0;  // end of file or a short read is no error
   return done;
 }
 
@@ -184,7 +184,7 @@ AtomicFile::AtomicFile(std::filesystem::path path, std::chrono::milliseconds pat
     : path_(throughLinks(std::move(path))), partial_(path_.string() + ".part") {
   requireInSandbox(path_);
   requireRegular(path_);
-  // What a killed writer left is taken over; it is cut only now that the lock is held.
+  // Reuses what a killed writer left; truncated only now that the lock is held.
   file_ = openLocked(partial_, path_, patience);
   if (!cutFile(file_, 0)) throw failure(path_, "cannot write");
 }
@@ -196,7 +196,7 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::write(std::span<const std::byte> bytes) {
   writeAll(file_.get(), bytes, path_);
   written_ += bytes.size();
-  // The disc works while the next bytes are made, instead of keeping commit() waiting at the end.
+  // Starts the disc early, so that commit() does not wait for everything at the end.
   constexpr std::uint64_t kPortion = 1 << 23;
   if (written_ - handed_over_ < kPortion) return;
   ::sync_file_range(file_.get(), static_cast<off64_t>(handed_over_),
@@ -205,7 +205,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 }
 
 void AtomicFile::commit() {
-  // First the contents, then the name: a power failure must not leave the name without contents.
+  // Contents before the name: a power failure must not leave the name without contents.
   syncFile(file_, path_);
   if (::rename(partial_.c_str(), path_.c_str()) != 0) throw failure(path_, "cannot write");
   committed_ = true;
@@ -254,7 +254,7 @@ void syncName(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.parent_path();
   const FileDescriptor names =
       opened(folder.empty() ? std::filesystem::path(".") : folder, O_RDONLY | O_DIRECTORY);
-  // One that may be written but not read cannot be synced, and some file systems cannot at all.
+  // An unreadable folder cannot be synced, and some file systems cannot sync folders.
   if (names.get() < 0) return;
   if (uninterrupted([&] { return ::fsync(names.get()); }) != 0 && errno != EINVAL) {
     throw failure(path, "cannot write");
@@ -262,7 +262,7 @@ void syncName(const std::filesystem::path& path) {
 }
 
 void writeTextFile(const std::filesystem::path& path, std::string_view text) {
-  // Another one writes a text, too, which takes no longer than this.
+  // Longer than another process needs to write a text.
   constexpr std::chrono::seconds kPatience{5};
   AtomicFile file(path, kPatience);
   file.write(text);
@@ -273,7 +273,7 @@ void requireBelow(const std::filesystem::path& folder, const std::filesystem::pa
   const auto place = std::filesystem::weakly_canonical(std::filesystem::absolute(path))
                          .lexically_relative(std::filesystem::weakly_canonical(folder));
   const bool below = !place.empty() && std::ranges::none_of(place, [](const auto& part) {
-    return part.string().starts_with('.');  // "..": beyond it; ".": itself; others: hidden
+    return part.string().starts_with('.');  // "..": outside; ".": itself; other names: hidden
   });
   if (below) return;
   throw InputError(

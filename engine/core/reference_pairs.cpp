@@ -1,8 +1,8 @@
 // The sweep: bodies go into strips along the second-longest axis (a body into every strip it
 // touches); within a strip they are sorted along the longest axis and swept. A pair that shares
-// several strips is reported only in the one that holds the larger of its two lower ends, so
-// nothing is reported twice and nothing is lost: that strip belongs to both bodies whenever they
-// overlap. Each world is swept for itself. O(n log n) plus the candidates of the sweeps.
+// several strips is reported only in the strip with the larger of its two lower bounds, so without
+// duplicates or omissions: overlapping bodies share that strip. Each world is swept separately. O(n
+// log n) plus the candidates of the sweeps.
 
 #include "broadmark/reference_pairs.h"
 
@@ -29,10 +29,10 @@ std::uint64_t mixed(Pair pair) {
 }
 
 /// Equal-width strips over [low, high] of one axis. Monotone, so overlapping intervals share the
-/// strips that their ends fall into; ends are clamped, never dropped.
+/// strips of their ends; ends are clamped, never dropped.
 class Strips {
  public:
-  /// Of the boxes that are not empty, of which there is one.
+  /// Requires a box that is not empty; ignores empty boxes.
   Strips(std::span<const Aabb> boxes, int axis) : axis_(axis) {
     double edges = 0;
     std::size_t count = 0;
@@ -75,7 +75,7 @@ class Strips {
 /// The axes, longest extent of all boxes first.
 std::array<int, 3> axesByExtent(std::span<const Aabb> boxes) {
   Aabb bounds = kEmptyBox;
-  for (const Aabb& box : boxes) bounds = merged(bounds, box);  // an empty one changes nothing
+  for (const Aabb& box : boxes) bounds = merged(bounds, box);  // an empty box changes nothing
   std::array<int, 3> axes = {0, 1, 2};
   std::ranges::stable_sort(axes, std::ranges::greater{}, [&](int axis) {
     return static_cast<double>(bounds.max[axis]) - bounds.min[axis];
@@ -112,9 +112,9 @@ StripContents fill(const Strips& strips, std::span<const Aabb> boxes) {
 
 PairDigest digest(PairRuns runs) {
   PairDigest result;
-  for (const PairRun run : runs) {
-    result.count += run.size();
-    for (const Pair pair : run) result.hash += mixed(pair);
+  for (const PairRun chunk : runs) {
+    result.count += chunk.size();
+    for (const Pair pair : chunk) result.hash += mixed(pair);
   }
   return result;
 }

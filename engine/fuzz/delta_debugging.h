@@ -1,5 +1,5 @@
-// Leaving out what a failure does not need. Zeller and Hildebrandt, "Simplifying and Isolating
-// Failure-Inducing Input", 2002.
+// Delta debugging: Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input",
+// 2002.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace broadmark {
 
-/// Leaves out chunks of `items`, large ones first, as long as `still_fails(fewer)` says so, until
-/// none of them can go, the last `kept` aside. Whether any could.
+/// Removes chunks of `items`, large ones first, while `still_fails(fewer)`, until no item can be
+/// removed; the last `kept` stay. Returns whether any was removed.
 template <class Item, class Fails>
 bool leaveOut(std::vector<Item> items, std::size_t kept, Fails&& still_fails) {
   const std::size_t at_first = items.size();

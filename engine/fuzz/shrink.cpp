@@ -1,12 +1,12 @@
-// Shrinking a failing case, by delta debugging (delta_debugging.h): parts are left out, large ones
-// first, as long as what is left still fails, until nothing can go: no single body, no frame, no
-// absence (the body is put where it was, or will be, instead), nothing of the collision filter.
+// Shrinks a failing case by delta debugging (delta_debugging.h): removes parts, large ones first,
+// as long as the rest still fails, until nothing can be removed: no single body, no frame, no
+// absence (filled with the body's box before or after), nothing of the collision filter.
 //
-// That alone would begin with the whole recording. But wrong answers mostly have causes nearby. So
-// the wrong pair is tried first with few neighbours, then with more and more (and with a short
-// history of frames, then a longer one), all in memory. If the pair and k neighbours fail, that
-// takes O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only the
-// whole recording fails, O(n log n) passes on nearly n bodies.
+// Plain delta debugging would begin with the whole recording. But most wrong answers have local
+// causes. So the wrong pair is tried first with few neighbours, then with more and more (and with a
+// short history of frames, then a longer one), all in memory. If the pair and k neighbours fail,
+// that takes O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only
+// the whole recording fails, O(n log n) passes on nearly n bodies.
 
 #include "broadmark/fuzz/shrink.h"
 
@@ -27,23 +27,23 @@
 namespace broadmark {
 namespace {
 
-/// The memory that a part takes.
+/// The memory of a part.
 std::size_t bytesOf(std::size_t bodies, std::size_t frames) {
   return bodies * frames * sizeof(Aabb);
 }
 
-/// Whether all of `part` is in `whole`; both ascend.
+/// Whether `part` is a subset of `whole`; both are ascending.
 bool isWithin(const Part& part, const Part& whole) {
   return std::ranges::includes(whole.bodies, part.bodies) &&
          std::ranges::includes(whole.frames, part.frames);
 }
 
-/// The position of the first of `all`, which ascend, that is not below `number`.
+/// The index of the first element of `all`, ascending, that is not below `number`.
 std::uint32_t positionOf(std::uint32_t number, const std::vector<std::uint32_t>& all) {
   return static_cast<std::uint32_t>(std::ranges::lower_bound(all, number) - all.begin());
 }
 
-/// The position of each of `numbers` in `all`; both ascend.
+/// The index of each of `numbers` in `all`; both are ascending.
 std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
                                      const std::vector<std::uint32_t>& all) {
   std::vector<std::uint32_t> found;
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
   return found;
 }
 
-/// Some of a part's bodies.
+/// The part restricted to some of its bodies.
 Part withBodies(const Part& part, std::vector<std::uint32_t> bodies) {
   Part fewer = part;
   fewer.filter = part.filter.of(positions(bodies, part.bodies));
@@ -62,14 +62,14 @@ Part withBodies(const Part& part, std::vector<std::uint32_t> bodies) {
   return fewer;
 }
 
-/// Some of a part's frames.
+/// The part restricted to some of its frames.
 Part withFrames(const Part& part, std::vector<std::uint32_t> frames) {
   Part fewer = part;
   fewer.frames = std::move(frames);
   return fewer;
 }
 
-/// The part in the numbers of another one that it is within.
+/// The part with ids relative to another part that contains it.
 Part renumbered(const Part& part, const Part& origin) {
   Part same = part;
   same.bodies = positions(part.bodies, origin.bodies);
@@ -95,7 +95,7 @@ double squaredGap(const Aabb& a, const Aabb& b) {
   return sum;
 }
 
-/// The `count` bodies nearest to the suspects, these first.
+/// The `count` bodies nearest to the suspects, suspects first.
 std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
                                    std::span<const Aabb> boxes, std::size_t count) {
   using Key = std::tuple<bool, double, std::uint32_t>;
@@ -127,7 +127,7 @@ class Shrinker {
       if (!failsAmongNeighbours()) {
         requireFailure();
         shortenHistory();
-        failsAmongNeighbours();  // more of them fit into memory now
+        failsAmongNeighbours();  // the smaller part leaves memory for more neighbours
       }
       shrinkToMinimum();
       best_.minimal = true;
@@ -137,7 +137,7 @@ class Shrinker {
   }
 
  private:
-  /// Holds a part in memory, if it fits. Whether it is held now.
+  /// Loads a part into memory, if it fits. Returns whether it is loaded.
   bool hold(const Part& part) {
     if (isHeld(part)) return true;
     if (bytesOf(part.bodies.size(), part.frames.size()) > options_.memory_bytes) {
@@ -158,7 +158,7 @@ class Shrinker {
     return {*held_, renumbered(part, origin_), name};
   }
 
-  /// Tries a part, which becomes the best when it fails.
+  /// Tries a part, and makes it the best one if it fails.
   bool fails(const Part& part) {
     SubRecording source = framesOf(part);
     const bool failed = trial_(source);
@@ -177,8 +177,8 @@ class Shrinker {
     if (options_.cancelled && options_.cancelled()) throw Cancelled();
   }
 
-  /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Whether
-  /// any of that failed.
+  /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Returns
+  /// whether any trial failed.
   bool failsAmongNeighbours() {
     const Part before = best_.part;
     const std::vector<std::uint32_t> seeds = suspects_();
@@ -229,7 +229,7 @@ class Shrinker {
     });
   }
 
-  /// The last frame stays, and one before it: the initial pose.
+  /// Keeps the last frame, and at least one before it: the initial pose.
   bool removeFrames() {
     return leaveOut(best_.part.frames, 1, [&](const std::vector<std::uint32_t>& frames) {
       return frames.size() > 1 && fails(withFrames(best_.part, frames));
@@ -238,8 +238,7 @@ class Shrinker {
 
   enum class PutWhere { it_was, it_will_be };
 
-  /// Fills each absence that is not needed. A part from which nobody is absent any more need not
-  /// say that somebody may be.
+  /// Fills each unnecessary absence. Sets all_present once no absence is left.
   bool fillAbsences() {
     if (best_.part.all_present) return false;
     bool fewer = false;
@@ -266,8 +265,8 @@ class Shrinker {
     return {filling.body, filling.first};
   }
 
-  /// Each time that a body is absent from a part, and its box just before or just after: the other
-  /// one if there is only that, empty if it is absent throughout. By body and frame.
+  /// Each absence of a body in a part, with its box just before or after: the other box if that is
+  /// missing, empty if the body is absent throughout. By body and frame.
   std::vector<Filling> absences(const Part& part, PutWhere where) {
     struct Body {
       Aabb before = kEmptyBox;
@@ -318,22 +317,22 @@ class Shrinker {
   IndexedFrames& whole_;
   std::uint32_t last_;  ///< frame
   ShrunkPart best_;
-  Part origin_;                    ///< a part of the recording, as it is there
-  std::optional<FrameList> held_;  ///< that part in memory
+  Part origin_;                    ///< in the recording's ids
+  std::optional<FrameList> held_;  ///< origin_ in memory
 };
 
-/// How a case's answer for the last frame differs from the right one; nothing when it does not get
-/// that far.
-std::optional<FrameDifference> lastDifference(CaseRun& run, IndexedFrames& source,
+/// The difference of a case's answer for the last frame from the right one; nothing if the pass
+/// ends early.
+std::optional<FrameDifference> lastDifference(CaseRun& case_run, IndexedFrames& source,
                                               const CancelQuery& cancelled) {
   const std::uint32_t last = source.scene().frames;
-  run.start(source.scene(), source.rewind());
-  for (std::uint32_t index = 1; index <= last && run.running(); ++index) {
+  case_run.start(source.scene(), source.rewind());
+  for (std::uint32_t index = 1; index <= last && case_run.running(); ++index) {
     if (cancelled && cancelled()) throw Cancelled();
     const Frame frame = source.at(index);
-    if (!run.step(frame) || index < last) continue;
+    if (!case_run.step(frame) || index < last) continue;
     Oracle oracle(0);
-    return run.check(frame, oracle);
+    return case_run.check(frame, oracle);
   }
   return std::nullopt;
 }
@@ -357,18 +356,19 @@ ShrunkPart shrinkPart(IndexedFrames& source, std::uint32_t last, const SuspectQu
   return Shrinker(source, last, suspects, fails, options).shrink();
 }
 
-ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDifference& known,
+ShrunkCase shrinkCase(const Case& test_case, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options) {
   const SceneInfo& scene = source.scene();
   if (known.frame < 1 || known.frame > scene.frames) {
     throw InputError(fmt::format("{}: no frame {} to shrink: frames 1 to {} are checked",
                                  scene.name, known.frame, scene.frames));
   }
-  if (!run.algorithm.traits.finds_pairs) {
+  if (!test_case.algorithm.traits.finds_pairs) {
     throw InputError(
-        fmt::format("{} finds no pairs: there is nothing to shrink", run.algorithm.id));
+        fmt::format("{} finds no pairs: there is nothing to shrink", test_case.algorithm.id));
   }
-  CaseRun trial(run, RunPolicy::unlimited(CheckMode::full), options.make_host, options.cancelled);
+  CaseRun trial(test_case, RunPolicy::unlimited(CheckMode::full), options.make_host,
+                options.cancelled);
   FrameDifference last = known;
   const auto fails = [&](IndexedFrames& part) {
     std::optional<FrameDifference> difference = lastDifference(trial, part, options.cancelled);
@@ -376,10 +376,10 @@ ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDiffere
     last = std::move(*difference);
     return true;
   };
-  const auto look_first = [&] { return suspectsOf(last, scene.objects); };
+  const auto suspects = [&] { return suspectsOf(last, scene.objects); };
   ShrinkOptions of_case = options;
-  of_case.subject = caseName(run);
-  const ShrunkPart shrunk = shrinkPart(source, known.frame, look_first, fails, of_case);
+  of_case.subject = caseName(test_case);
+  const ShrunkPart shrunk = shrinkPart(source, known.frame, suspects, fails, of_case);
   return {shrunk, std::move(last)};
 }
 

@@ -1,5 +1,5 @@
-// Filters are taken apart: the groups of each body, and the matrix. Layers are few, so that each is
-// tried to be joined to each other one: O(layers²) trials. The rest is delta debugging.
+// Simplifies the groups of each body, and the matrix. Layers are few, so each is tried to be merged
+// with each other one: O(layers²) trials. The rest is delta debugging.
 
 #include "simpler_filter.h"
 
@@ -13,7 +13,7 @@
 namespace broadmark {
 namespace {
 
-/// A filter, to be changed.
+/// A filter in modifiable form.
 struct OpenFilter {
   std::vector<BodyGroups> bodies;
   LayerMatrix matrix;
@@ -141,7 +141,7 @@ class FilterShrinker {
   }
 
   const std::function<bool(const CollisionFilter&)>& still_fails_;
-  OpenFilter best_;  ///< the simplest with which it fails
+  OpenFilter best_;  ///< the simplest failing filter
 };
 
 }  // namespace

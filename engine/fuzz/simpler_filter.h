@@ -1,4 +1,4 @@
-// The simplest collision filter with which something still fails.
+// Simplification of collision filters that cause a failure.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace broadmark {
 
-/// Leaves out what `still_fails` does not need of a filter of so many bodies: all of it; else each
-/// layer (its bodies join another one), each exception of the matrix (the two layers then collide),
-/// each world (its bodies join the first that is left), and each tag. Each call of `still_fails`
-/// that returns true is a step from there on. Whether there was any.
+/// Simplifies a filter of that many bodies while `still_fails`: drops all of it; else each layer
+/// (its bodies join another one), each exception of the matrix (the two layers then collide), each
+/// world (its bodies join the first remaining world), and each tag. Continues from every
+/// simplification for which `still_fails` returns true. Returns whether there was any.
 bool simplifyFilter(CollisionFilter filter, std::size_t bodies,
                     const std::function<bool(const CollisionFilter&)>& still_fails);
 

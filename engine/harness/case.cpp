@@ -18,19 +18,21 @@ Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string devi
           .answer = answer};
 }
 
-std::string caseName(const Case& run) {
-  const AlgorithmTraits& traits = run.algorithm.traits;
-  std::string name = run.algorithm.id;
-  if (traits.vectorised) name += fmt::format("/{}", isaName(run.isa));
-  if (traits.parallel) name += fmt::format("/t{}", run.threads);
-  if (run.answer != AnswerKind::pairs) name += fmt::format("/{}", kAnswerKinds.nameOf(run.answer));
-  for (const auto& [key, value] : run.parameters) name += fmt::format("/{}={}", key, value);
+std::string caseName(const Case& test_case) {
+  const AlgorithmTraits& traits = test_case.algorithm.traits;
+  std::string name = test_case.algorithm.id;
+  if (traits.vectorised) name += fmt::format("/{}", isaName(test_case.isa));
+  if (traits.parallel) name += fmt::format("/t{}", test_case.threads);
+  if (test_case.answer != AnswerKind::pairs) {
+    name += fmt::format("/{}", kAnswerKinds.nameOf(test_case.answer));
+  }
+  for (const auto& [key, value] : test_case.parameters) name += fmt::format("/{}={}", key, value);
   return name;
 }
 
-std::unique_ptr<BroadPhase> makeInstance(const Case& run) {
-  auto instance = run.algorithm.create();
-  setParameters(*instance, run.parameters);
+std::unique_ptr<BroadPhase> makeInstance(const Case& test_case) {
+  auto instance = test_case.algorithm.create();
+  setParameters(*instance, test_case.parameters);
   return instance;
 }
 

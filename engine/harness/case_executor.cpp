@@ -1,4 +1,4 @@
-// The clock, and the calls into an algorithm.
+// Timed calls into an algorithm.
 
 #include "broadmark/harness/case_executor.h"
 
@@ -42,10 +42,10 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
   return times;
 }
 
-void requireRunnable(const Case& run, const SceneInfo& scene) {
-  const AlgorithmTraits& traits = run.algorithm.traits;
-  if (traits.vectorised && !isaSupported(run.isa)) {
-    throw UnsupportedError(fmt::format("this processor has no {}", isaName(run.isa)));
+void requireRunnable(const Case& test_case, const SceneInfo& scene) {
+  const AlgorithmTraits& traits = test_case.algorithm.traits;
+  if (traits.vectorised && !isaSupported(test_case.isa)) {
+    throw UnsupportedError(fmt::format("this processor has no {}", isaName(test_case.isa)));
   }
   if (scene.objects > traits.max_objects) {
     throw UnsupportedError(
@@ -58,15 +58,15 @@ void requireRunnable(const Case& run, const SceneInfo& scene) {
   }
 }
 
-/// Whether the bodies' numbers that the algorithm sees change from frame to frame.
-bool isCompacted(const Case& run, const SceneInfo& scene) {
-  return run.algorithm.traits.changing_worlds == ChangingWorlds::compacted &&
+/// Whether the bodies' indices in the algorithm vary between frames.
+bool isCompacted(const Case& test_case, const SceneInfo& scene) {
+  return test_case.algorithm.traits.changing_worlds == ChangingWorlds::compacted &&
          isChangingWorld(scene);
 }
 
-/// Whether each of several worlds is for an instance of its own.
-bool isApart(const Case& run, const SceneInfo& scene) {
-  const AlgorithmTraits& traits = run.algorithm.traits;
+/// Whether each of several worlds gets its own instance.
+bool isApart(const Case& test_case, const SceneInfo& scene) {
+  const AlgorithmTraits& traits = test_case.algorithm.traits;
   const std::size_t worlds = worldCount(scene);
   if (worlds < 2) return false;
   if (traits.instance_per_world) return true;
@@ -74,9 +74,9 @@ bool isApart(const Case& run, const SceneInfo& scene) {
          scene.objects / worlds >= traits.side_by_side_below;
 }
 
-std::unique_ptr<BroadPhase> makeForOneWorld(const Case& run, const SceneInfo& scene) {
-  std::unique_ptr<BroadPhase> instance = makeInstance(run);
-  if (!isCompacted(run, scene)) return instance;
+std::unique_ptr<BroadPhase> makeForOneWorld(const Case& test_case, const SceneInfo& scene) {
+  std::unique_ptr<BroadPhase> instance = makeInstance(test_case);
+  if (!isCompacted(test_case, scene)) return instance;
   return compacted(std::move(instance));
 }
 
@@ -124,7 +124,7 @@ std::unique_ptr<BroadPhase> InProcessExecutor::makeInstanceFor(const SceneInfo& 
   return instance;
 }
 
-/// Asked once a frame: whoever looks at the answer sees the same one. Returns its size.
+/// Called once a frame, so that all later queries see the same answer. Returns its size.
 std::uint64_t InProcessExecutor::takeAnswer() {
   if (case_.answer == AnswerKind::events) {
     events_ = instance_->events();
@@ -135,7 +135,7 @@ std::uint64_t InProcessExecutor::takeAnswer() {
 }
 
 void InProcessExecutor::pinThreads() {
-  // A library that starts threads would have them all on one core.
+  // Threads started by the library would inherit the affinity to one core.
   if (case_.algorithm.traits.on_device) return;
   constexpr std::chrono::milliseconds kMoment{60};
   const bool is_choice = execution_->threads() < static_cast<int>(usable_cores_.size());
@@ -152,9 +152,9 @@ FrameTimes InProcessExecutor::runCounted(const Frame& frame) {
 
 StepResult InProcessExecutor::step(const Frame& frame) {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  StepResult run{.times = runCounted(frame)};
-  run.pairs = takeAnswer();
-  return run;
+  StepResult result{.times = runCounted(frame)};
+  result.pairs = takeAnswer();
+  return result;
 }
 
 void InProcessExecutor::stop() {
@@ -189,8 +189,8 @@ std::string InProcessExecutor::validate() {
   return instance_->validate();
 }
 
-std::unique_ptr<CaseExecutor> makeLocalHost(const Case& run, CancelQuery /*cancelled*/) {
-  return std::make_unique<InProcessExecutor>(run);
+std::unique_ptr<CaseExecutor> makeLocalHost(const Case& test_case, CancelQuery /*cancelled*/) {
+  return std::make_unique<InProcessExecutor>(test_case);
 }
 
 }  // namespace broadmark

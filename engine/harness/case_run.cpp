@@ -1,4 +1,4 @@
-// The limits and the verdict.
+// Limits and statuses.
 
 #include "broadmark/harness/case_run.h"
 
@@ -11,16 +11,16 @@
 namespace broadmark {
 namespace {
 
-/// The running mean is judged once this many frames are known.
+/// Frames before the running mean is compared with the limit.
 constexpr std::uint32_t kFramesBeforeLimit = 3;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-CaseRun::CaseRun(Case run, RunPolicy policy, const ExecutorFactory& make_host,
+CaseRun::CaseRun(Case test_case, RunPolicy policy, const ExecutorFactory& make_host,
                  CancelQuery cancelled)
-    : case_(std::move(run)),
+    : case_(std::move(test_case)),
       policy_(policy),
       margin_(makeInstance(case_)->margin()),
       host_(make_host(case_, std::move(cancelled))) {}
@@ -30,7 +30,7 @@ void CaseRun::fail(Status status, std::string reason) {
     status_ = status;
     reason_ = std::move(reason);
   } else if (status != Status::mismatch && !ended_early_) {
-    reason_ += fmt::format("; then {}", reason);  // a mismatch does not say why a pass ended
+    reason_ += fmt::format("; then {}", reason);  // a mismatch does not explain why a pass ended
   }
   ended_early_ |= status != Status::mismatch;
 }
@@ -68,7 +68,7 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   frames_ = 0;
   total_ns_ = 0;
   initialize_ns_ = 0;
-  has_instance_ = true;  // for stop(), however far it comes
+  has_instance_ = true;  // so that stop() is called even if start fails halfway
   followed_.clear();
   const bool started = attempt([&] {
     initialize_ns_ = host_->start(scene, changed_bodies_.complete(first));

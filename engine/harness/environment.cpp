@@ -1,4 +1,4 @@
-// Asking Linux and the compiler what we run on.
+// Queries Linux and the compiler for the environment.
 
 #include "broadmark/harness/environment.h"
 
@@ -17,7 +17,7 @@
 namespace broadmark {
 namespace {
 
-/// First line of a system file; "" when there is none.
+/// First line of a system file; "" if there is none.
 std::string firstLine(const std::string& path) {
   std::ifstream file(path);
   std::string line;

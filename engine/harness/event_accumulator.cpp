@@ -1,4 +1,4 @@
-// Events sorted, so that those of one pair stand side by side.
+// Sorts events, so that those of one pair are adjacent.
 
 #include "broadmark/harness/event_accumulator.h"
 
@@ -18,8 +18,8 @@ void EventAccumulator::apply(const PairEvents& events, std::size_t bodies) {
   if (eventCount(events) == 0) return;
   events_.clear();
   const auto add = [&](PairRuns runs, bool ends) {
-    for (const PairRun run : runs) {
-      for (const Pair pair : run) events_.emplace_back(pair, ends);
+    for (const PairRun chunk : runs) {
+      for (const Pair pair : chunk) events_.emplace_back(pair, ends);
     }
   };
   add(events.began, false);

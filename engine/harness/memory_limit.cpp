@@ -1,5 +1,5 @@
-// RLIMIT_DATA: private memory that can be written. Unlike RLIMIT_AS it does not count what a
-// graphics driver or a library merely maps.
+// RLIMIT_DATA limits private writable memory. Unlike RLIMIT_AS it excludes what a graphics driver
+// or a library merely maps.
 
 #include "broadmark/harness/memory_limit.h"
 

@@ -1,4 +1,4 @@
-// Each warning has a function of its own, which adds to the list.
+// Each warning has a separate function, which appends to the list.
 
 #include "broadmark/harness/noise_warnings.h"
 
@@ -13,10 +13,10 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-/// As much of a core as may be busy unmentioned. A tick in a short moment is no news.
-constexpr double kLittle = 0.25;
+/// Load of a core below this is ignored. A single tick in a short moment is insignificant.
+constexpr double kIgnoredLoad = 0.25;
 
-/// What a file holds first; nothing if there is none.
+/// The first value in a file; nothing if there is none.
 std::optional<int> numberIn(const std::filesystem::path& path) {
   std::ifstream file(path);
   int number = 0;
@@ -25,7 +25,7 @@ std::optional<int> numberIn(const std::filesystem::path& path) {
 
 bool hasTurbo(const SystemFolders& folders) {
   const auto cpu = folders.sys / "devices/system/cpu";
-  // Intel's driver says whether it is off, the others whether it is on.
+  // Intel's driver reports "off", the others "on".
   if (const auto off = numberIn(cpu / "intel_pstate/no_turbo")) return *off == 0;
   return numberIn(cpu / "cpufreq/boost").value_or(0) != 0;
 }
@@ -33,7 +33,7 @@ bool hasTurbo(const SystemFolders& folders) {
 void warnOfLoad(Texts& warnings, const MachineState& machine) {
   double busy = 0;
   for (const int core : machine.usable_cores) busy += busyShare(machine.busy, core);
-  if (busy < kLittle) return;
+  if (busy < kIgnoredLoad) return;
   warnings.push_back(
       fmt::format("other programs keep {:.1f} of {} cores busy: times are longer and vary more",
                   busy, machine.usable_cores.size()));
@@ -46,7 +46,7 @@ void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
     const auto beside = machine.siblings.find(core);
     if (beside == machine.siblings.end()) continue;
     for (const int sibling : beside->second) {
-      if (busyShare(machine.busy, sibling) < kLittle) continue;
+      if (busyShare(machine.busy, sibling) < kIgnoredLoad) continue;
       warnings.push_back(
           fmt::format("core {} (SMT sibling of core {}) is busy; timings on core {} will be slower",
                       sibling, core, core));
@@ -68,7 +68,7 @@ void warnOfFrequency(Texts& warnings, const Environment& environment, const Mach
 void warnOfThreads(Texts& warnings, const MachineState& machine, int threads) {
   if (std::cmp_less_equal(threads, machine.usable_cores.size())) return;
   warnings.push_back(
-      fmt::format("{} threads take turns on {} cores", threads, machine.usable_cores.size()));
+      fmt::format("{} threads share {} cores", threads, machine.usable_cores.size()));
 }
 
 void warnOfBuilds(Texts& warnings, const Environment& environment, const Algorithm& algorithm) {
@@ -92,13 +92,13 @@ MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders&
 }
 
 std::vector<std::string> noiseWarnings(const Environment& environment, const MachineState& machine,
-                                       const Case& run) {
+                                       const Case& test_case) {
   Texts warnings;
   warnOfLoad(warnings, machine);
-  warnOfSiblings(warnings, machine, run.threads);
+  warnOfSiblings(warnings, machine, test_case.threads);
   warnOfFrequency(warnings, environment, machine);
-  warnOfThreads(warnings, machine, run.threads);
-  warnOfBuilds(warnings, environment, run.algorithm);
+  warnOfThreads(warnings, machine, test_case.threads);
+  warnOfBuilds(warnings, environment, test_case.algorithm);
   return warnings;
 }
 

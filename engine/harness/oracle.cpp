@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kBruteForceLimit = 300;
 
-/// Keeps count of every difference and lists the first of each kind.
+/// Counts every difference and lists the first of each kind.
 void note(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
   ++count;
   if (listed.size() < FrameDifference::kListed) listed.push_back(pair);
@@ -24,15 +24,15 @@ void note(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
 
 Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
                              bool with_pairs) {
-  // An answer keeps its filter, so no other can get the same address.
+  // Each answer holds its filter, so no other filter can get the same address.
   const std::pair key(hashOf(std::as_bytes(boxes)), filter.address());
   const auto known = answers_.find(key);
   if (known != answers_.end() && (known->second.pairs || !with_pairs)) return known->second;
   scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter)
-                                              : sweptPairs(boxes, filter, most_pairs_);
+                                              : sweptPairs(boxes, filter, max_pairs_);
   Answer& answer = answers_.try_emplace(key, Answer{.filter = filter}).first->second;
-  const PairRun run = scratch_;
-  answer.digest = digest({&run, 1});
+  const PairRun pairs = scratch_;
+  answer.digest = digest({&pairs, 1});
   const std::size_t bytes = scratch_.size() * sizeof(Pair);
   if (bytes <= budget_bytes_) {
     budget_bytes_ -= bytes;
@@ -64,8 +64,8 @@ FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, con
   FrameDifference difference{.frame = frame.index};
   std::vector<Pair> given;
   given.reserve(pairCount(answer));
-  for (const PairRun run : answer) {
-    for (const Pair pair : run) {
+  for (const PairRun chunk : answer) {
+    for (const Pair pair : chunk) {
       if (pair.a < pair.b && pair.b < frame.boxes.size()) {
         given.push_back(pair);
       } else {

@@ -1,5 +1,5 @@
-// Linux's performance events, one descriptor each. They are not one group: a group counts only
-// while the processor has room for all of it, and reading one does not reach the threads.
+// Linux performance events, one descriptor each. Not one group: a group counts only while the
+// processor has slots for all of it, and reading it does not include the threads.
 
 #include "broadmark/harness/processor_counters.h"
 
@@ -30,7 +30,7 @@ FileDescriptor ProcessorCounters::open(const Event& event) {
   wanted.config = event.config;
   wanted.disabled = 1;
   wanted.inherit = 1;
-  wanted.exclude_kernel = 1;  // what everybody may count, where anything may be counted
+  wanted.exclude_kernel = 1;  // unprivileged users may count user space only, if anything
   wanted.exclude_hv = 1;
   wanted.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
   constexpr int kThisThread = 0;
@@ -47,7 +47,7 @@ ProcessorCounters::ProcessorCounters(const Events& events) {
 }
 
 std::optional<ProcessorCounters::Reading> ProcessorCounters::read(const Counter& counter) {
-  Reading reading;  // as the kernel lays it out for our read_format
+  Reading reading;  // layout of the kernel's read_format
   static_assert(sizeof reading == 3 * sizeof(std::uint64_t));
   if (counter.file.get() < 0) return std::nullopt;
   if (::read(counter.file.get(), &reading, sizeof reading) != sizeof reading) return std::nullopt;

@@ -1,4 +1,4 @@
-// Repetitions of cases, and what is kept of them.
+// Repetitions of cases, and their results.
 
 #include "broadmark/harness/runner.h"
 
@@ -10,7 +10,7 @@
 namespace broadmark {
 namespace {
 
-/// Counts what happens in the frames of one pass.
+/// Collects the counts of one pass's frames.
 class FrameCounter {
  public:
   /// `result` outlives this.
@@ -19,14 +19,14 @@ class FrameCounter {
         is_first_pass_(result.repetitions.empty()),
         number_(static_cast<int>(result.repetitions.size()) + 1) {}
 
-  /// The frame that was run last; the next one counts as another.
-  void count(const Frame& frame, CaseRun& run, Oracle& oracle) {
+  /// Counts the frame that was run last; each call advances to the next frame.
+  void count(const Frame& frame, CaseRun& case_run, Oracle& oracle) {
     if (passed_ == result_.frames.size()) result_.frames.emplace_back();
     FrameCounts& counts = result_.frames[passed_++];
-    auto difference = run.check(frame, oracle);
+    auto difference = case_run.check(frame, oracle);
     if (difference) keepWorst(counts, *difference);
-    if (is_first_pass_ && run.answered()) {
-      countWork(counts, run);
+    if (is_first_pass_ && case_run.answered()) {
+      countWork(counts, case_run);
       countBodies(frame);
     }
     if (!difference || !difference->isMismatch()) return;
@@ -35,7 +35,7 @@ class FrameCounter {
   }
 
  private:
-  /// Wrong pairs are counted once, however many passes show them.
+  /// Keeps the maximum over the passes: repeated wrong pairs are counted once.
   void keepWorst(FrameCounts& counts, const FrameDifference& difference) {
     const auto keep = [&](FrameCount which, std::uint64_t found, std::uint64_t& sum) {
       const std::uint64_t more = found - std::min(found, counts[which]);
@@ -48,14 +48,14 @@ class FrameCounter {
     keep(FrameCount::invalid, difference.invalid_count, result_.invalid_count);
   }
 
-  /// Counts of pairs and of work, in the first pass: the others do the same.
-  void countWork(FrameCounts& counts, CaseRun& run) {
-    counts[FrameCount::pairs] = run.pairs();
-    counts[FrameCount::changed_bodies] = run.changedBodies();
+  /// Counts pairs and work, in the first pass only: the others repeat it.
+  void countWork(FrameCounts& counts, CaseRun& case_run) {
+    counts[FrameCount::pairs] = case_run.pairs();
+    counts[FrameCount::changed_bodies] = case_run.changedBodies();
     const std::size_t before = passed_ - 1;
-    addToMean(result_.pairs_mean, run.pairs(), before);
-    result_.pairs_max = std::max(result_.pairs_max, run.pairs());
-    for (const auto& [name, count] : run.counters()) {
+    addToMean(result_.pairs_mean, case_run.pairs(), before);
+    result_.pairs_max = std::max(result_.pairs_max, case_run.pairs());
+    for (const auto& [name, count] : case_run.counters()) {
       addToMean(result_.counters[name], count, before);
     }
   }
@@ -69,7 +69,7 @@ class FrameCounter {
     bodies.max = std::max(bodies.max, present);
   }
 
-  /// Takes one more value into the mean of `count_before`.
+  /// Adds a value to the mean of `count_before` values.
   static void addToMean(double& mean, std::uint64_t value, std::uint64_t count_before) {
     mean += (static_cast<double>(value) - mean) / static_cast<double>(count_before + 1);
   }
@@ -91,14 +91,14 @@ std::string recordingId(const RecordingReference& recording) {
     if (name != "seed") id += fmt::format("/{}={}", name, value);
   }
   for (const auto& [name, value] : recording.reading) {
-    // Of swept boxes and of elements, names tell.
+    // Names already contain "swept" and "elements".
     if (name != "swept" && name != "elements") id += fmt::format("/{}={}", name, value);
   }
   return id;
 }
 
-std::string caseId(const RecordingReference& recording, const Case& run) {
-  return recordingId(recording) + '/' + caseName(run);
+std::string caseId(const RecordingReference& recording, const Case& test_case) {
+  return recordingId(recording) + '/' + caseName(test_case);
 }
 
 std::string caseNameOf(const CaseResult& result) {
@@ -116,62 +116,65 @@ std::string variantOf(const CaseResult& result) {
   return text;
 }
 
-CaseResult beginCase(const Case& run, const RecordingReference& recording) {
+CaseResult beginCase(const Case& test_case, const RecordingReference& recording) {
   CaseResult result;
-  result.id = caseId(recording, run);
+  result.id = caseId(recording, test_case);
   result.recording = recording;
-  result.algorithm = run.algorithm.id;
-  result.family = run.algorithm.family;
-  result.isa = run.isa;
-  result.vectorised = run.algorithm.traits.vectorised;
-  result.threads = run.threads;
-  result.device = run.device;
-  result.plugin = run.algorithm.plugin;
-  result.parameters = parameterValues(*makeInstance(run));
-  result.answer = run.answer;
+  result.algorithm = test_case.algorithm.id;
+  result.family = test_case.algorithm.family;
+  result.isa = test_case.isa;
+  result.vectorised = test_case.algorithm.traits.vectorised;
+  result.threads = test_case.threads;
+  result.device = test_case.device;
+  result.plugin = test_case.algorithm.plugin;
+  result.parameters = parameterValues(*makeInstance(test_case));
+  result.answer = test_case.answer;
   return result;
 }
 
-bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
+bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, Oracle& oracle,
                    const RunHooks& hooks, bool measured) {
-  result.checked = run.checks();
+  result.checked = case_run.checks();
   Repetition repetition;
   repetition.frames.reserve(source.scene().frames);
   try {
     const Frame first = source.rewind();
     FrameCounter counter(result);
-    if (run.start(source.scene(), first) && result.setup.empty()) result.setup = run.setup();
-    repetition.initialize_ns = run.initializeNanoseconds();
-    while (run.running()) {
+    if (case_run.start(source.scene(), first) && result.setup.empty()) {
+      result.setup = case_run.setup();
+    }
+    repetition.initialize_ns = case_run.initializeNanoseconds();
+    while (case_run.running()) {
       const std::optional<Frame> frame = source.next();
       if (!frame) break;
       if (hooks.cancelled && hooks.cancelled()) {
-        run.stop();
+        case_run.stop();
         return false;
       }
-      run.step(*frame);
-      if (!run.answered()) break;
-      repetition.frames.push_back(run.times());
-      counter.count(*frame, run, oracle);
+      case_run.step(*frame);
+      if (!case_run.answered()) break;
+      repetition.frames.push_back(case_run.times());
+      counter.count(*frame, case_run, oracle);
       if (hooks.progress) hooks.progress(frame->index);
     }
-    const bool instance_survived = run.hasInstance();
-    run.stop();
-    repetition.processor = run.report().processor;
+    const bool instance_survived = case_run.hasInstance();
+    case_run.stop();
+    repetition.processor = case_run.report().processor;
     if (measured && instance_survived) result.repetitions.push_back(std::move(repetition));
   } catch (const Cancelled&) {
     return false;
   }
-  result.status = run.status();
-  result.reason = run.reason();
-  result.peak_bytes = run.report().peak_bytes;
-  result.conditions.pinned = run.report().pinned;
+  result.status = case_run.status();
+  result.reason = case_run.reason();
+  result.peak_bytes = case_run.report().peak_bytes;
+  result.conditions.pinned = case_run.report().pinned;
   return true;
 }
 
-CaseResult runCase(const Case& run, FrameSource& source, const RunPolicy& policy, int repetitions) {
-  CaseResult result = beginCase(run, {.scene = source.scene()});
-  CaseRun case_run(run, policy);
+CaseResult runCase(const Case& test_case, FrameSource& source, const RunPolicy& policy,
+                   int repetitions) {
+  CaseResult result = beginCase(test_case, {.scene = source.scene()});
+  CaseRun case_run(test_case, policy);
   Oracle oracle;
   for (int repetition = 0; repetition < repetitions && result.status == Status::ok; ++repetition) {
     runRepetition(result, case_run, source, oracle);

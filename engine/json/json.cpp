@@ -5,7 +5,7 @@
 namespace broadmark {
 namespace {
 
-/// The library's complaint about a text as ours, with line and column.
+/// Converts the library's error, with line and column.
 InputError notJson(std::string_view name, const nlohmann::detail::exception& error) {
   // Drop the library's own prefix "[json.exception.parse_error.101] ".
   const std::string_view what = error.what();
@@ -15,10 +15,10 @@ InputError notJson(std::string_view name, const nlohmann::detail::exception& err
                   what.substr(end_of_prefix == std::string_view::npos ? 0 : end_of_prefix + 2)));
 }
 
-/// Looks for a key of the outermost object, and for the text that it has.
+/// Searches for a key of the outermost object, and for its string value.
 class KeyReader final : public JsonEvents {
  public:
-  /// Stops at the key, or at its text if that is wanted.
+  /// Stops at the key, or at its value if that is requested.
   KeyReader(std::string_view wanted, bool wants_text, std::string_view name)
       : JsonEvents(name), wanted_(wanted), wants_text_(wants_text) {}
 
@@ -45,7 +45,7 @@ class KeyReader final : public JsonEvents {
     return text_.empty();
   }
 
-  /// Whether the last key of the outermost object is the wanted one.
+  /// Whether the last key of the outermost object is the requested one.
   [[nodiscard]] bool isThere() const { return is_there_; }
   [[nodiscard]] const std::string& text() const { return text_; }
 

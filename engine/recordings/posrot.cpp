@@ -20,9 +20,9 @@ float spacing(float x) {
   return std::nextafter(std::abs(x), std::numeric_limits<float>::infinity()) - std::abs(x);
 }
 
-/// Half an edge of a body that was recorded as reaching from `low` to `high`. Either end is
-/// rounded, so that the same edge comes out a little different at different places; sizes that
-/// people give are whole thousandths more often than chance has it.
+/// Half an edge of a body with recorded bounds `low` and `high`. Both bounds are rounded, so that
+/// the same edge varies a little with the position; user-chosen sizes are usually whole
+/// thousandths.
 float halfEdge(float low, float high) {
   const double half = (double{high} - double{low}) / 2;
   const double usual = std::round(half * 1000) / 1000;
@@ -63,7 +63,7 @@ std::span<const Aabb> PosrotReader::readBoxes(std::uint32_t index) {
     const Pose& pose = poses_[body];
     boxes_[body] = boxAround(pose.position, extents(body, pose.rotation));
   }
-  requireValid<Aabb>(boxes_, index, scene(), name(), "box");  // at the edge of what floats hold
+  requireValid<Aabb>(boxes_, index, scene(), name(), "box");  // posed boxes may overflow
   return boxes_;
 }
 
@@ -75,7 +75,7 @@ PosrotWriter::~PosrotWriter() = default;
 void PosrotWriter::writeBoxes(std::span<const Aabb> unturned) { file_->append(unturned, "box"); }
 
 void PosrotWriter::write(std::span<const Pose> poses) {
-  // Not as they lie in memory: there the fourth component of a position may be anything.
+  // Copied by component: in memory the fourth component of a position is undefined.
   records_.resize(poses.size());
   std::ranges::transform(poses, records_.begin(), [](const Pose& pose) {
     const auto& [x, y, z] = pose.position;

@@ -1,4 +1,4 @@
-// The kinds of recordings; reading and writing .aabbs recordings.
+// The recording formats; reading and writing .aabbs recordings.
 
 #include "broadmark/recordings/recording.h"
 
@@ -30,25 +30,25 @@ std::unique_ptr<Recording> open(FileDescriptor file, std::string name) {
   return std::make_unique<Reader>(std::move(file), std::move(name));
 }
 
-/// A kind of recording.
-struct Kind {
+/// A recording format.
+struct RecordingFormat {
   std::string_view extension;
   std::unique_ptr<Recording> (*open)(FileDescriptor, std::string name);
-  /// Null: does not hold boxes. Without a path: an unnamed file.
+  /// Null: does not hold boxes. An empty path: an unnamed file.
   std::unique_ptr<RecordingFile> (*write)(const std::filesystem::path&, const SceneInfo&,
                                           const RecordingOrigin&);
 };
 
-constexpr Kind kKinds[] = {
+constexpr RecordingFormat kFormats[] = {
     {kAabbsExtension, open<RecordingReader>, makeAabbsFile},
     {kBroadmarkExtension, open<Recording2Reader>, makeRecording2File},
     {kPosrotExtension, open<PosrotReader>, nullptr},
 };
 
-/// The first one unless the extension is another's.
-const Kind& kindOf(const std::filesystem::path& extension) {
-  const auto* kind = std::ranges::find(kKinds, extension, &Kind::extension);
-  return kind == std::end(kKinds) ? kKinds[0] : *kind;
+/// The format of an extension; the first format if it is unknown.
+const RecordingFormat& formatOf(const std::filesystem::path& extension) {
+  const auto* format = std::ranges::find(kFormats, extension, &RecordingFormat::extension);
+  return format == std::end(kFormats) ? kFormats[0] : *format;
 }
 
 struct stat statusOf(const FileDescriptor& file, const std::string& name) {
@@ -60,23 +60,23 @@ struct stat statusOf(const FileDescriptor& file, const std::string& name) {
 }  // namespace
 
 std::uint64_t recordingBytes(const SceneInfo& scene) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
   const std::uint64_t boxes = std::uint64_t{scene.objects} * (std::uint64_t{1} + scene.frames);
-  // Absurd counts must not wrap around to a size that looks right.
-  if (boxes > (kMost - kRecordingHeaderBytes) / kRecordBytes) return kMost;
+  // Absurd counts must not wrap around to a plausible size.
+  if (boxes > (kMax - kRecordingHeaderBytes) / kRecordBytes) return kMax;
   return kRecordingHeaderBytes + kRecordBytes * boxes;
 }
 
 std::vector<std::string> recordingExtensions() {
   std::vector<std::string> all;
-  for (const Kind& kind : kKinds) all.emplace_back(kind.extension);
+  for (const RecordingFormat& format : kFormats) all.emplace_back(format.extension);
   return all;
 }
 
 std::vector<std::string> boxRecordingExtensions() {
   std::vector<std::string> all;
-  for (const Kind& kind : kKinds) {
-    if (kind.write != nullptr) all.emplace_back(kind.extension);
+  for (const RecordingFormat& format : kFormats) {
+    if (format.write != nullptr) all.emplace_back(format.extension);
   }
   return all;
 }
@@ -88,11 +88,11 @@ std::string_view recordingExtension(const SceneInfo& scene) {
 }
 
 void requireHolds(const std::filesystem::path& path, const SceneInfo& scene) {
-  const Kind& kind = kindOf(path.extension());
-  if (kind.extension == kBroadmarkExtension || fitsAabbs(scene)) return;
+  const RecordingFormat& format = formatOf(path.extension());
+  if (format.extension == kBroadmarkExtension || fitsAabbs(scene)) return;
   throw InputError(fmt::format(
       "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
-      path.string(), kind.extension, kBroadmarkExtension));
+      path.string(), format.extension, kBroadmarkExtension));
 }
 
 std::string recordingFileName(const SceneInfo& scene) {
@@ -149,7 +149,7 @@ const std::string& Recording::hash() {
 }
 
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path) {
-  return kindOf(path.extension()).open(openForReading(path), path.string());
+  return formatOf(path.extension()).open(openForReading(path), path.string());
 }
 
 OriginalRecording::OriginalRecording(FileDescriptor file, std::string name)
@@ -188,17 +188,17 @@ std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
                                  const RecordingOrigin& origin) {
-  const Kind& kind = kindOf(path.extension());
-  if (kind.write == nullptr) {
+  const RecordingFormat& format = formatOf(path.extension());
+  if (format.write == nullptr) {
     throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
                                  fmt::join(boxRecordingExtensions(), " or ")));
   }
   requireHolds(path, scene);
-  file_ = kind.write(path, scene, origin);
+  file_ = format.write(path, scene, origin);
 }
 
 RecordingWriter::RecordingWriter(const SceneInfo& scene)
-    : file_(kindOf(recordingExtension(scene)).write({}, scene, {})) {}
+    : file_(formatOf(recordingExtension(scene)).write({}, scene, {})) {}
 
 RecordingWriter::~RecordingWriter() = default;
 
@@ -209,8 +209,8 @@ void RecordingWriter::write(const Frame& frame) { file_->write(frame); }
 std::string RecordingWriter::finish() { return file_->finish(); }
 
 std::unique_ptr<Recording> RecordingWriter::finishTemporary() {
-  const Kind& kind = kindOf(recordingExtension(file_->scene()));
-  return kind.open(file_->finishTemporary(), file_->name());
+  const RecordingFormat& format = formatOf(recordingExtension(file_->scene()));
+  return format.open(file_->finishTemporary(), file_->name());
 }
 
 bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& progress) {

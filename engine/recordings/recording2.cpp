@@ -1,4 +1,4 @@
-// Reading recording 2: the boxes are kept, and what changed is put in their places.
+// Reading recording 2: keeps the boxes, and updates the changed ones.
 
 #include "broadmark/recordings/recording2.h"
 
@@ -16,7 +16,7 @@
 namespace broadmark {
 namespace {
 
-/// Rows that are read at once: their bytes fit in the cache.
+/// Rows read at once: their bytes fit in the cache.
 constexpr std::uint64_t kPieceRows = 1 << 13;
 
 template <class... Arguments>
@@ -56,7 +56,7 @@ void Recording2Reader::open() {
   if (end.magic != kRecording2Magic) {
     refuse(name(), "byte {}: does not end as a recording 2: cut short, or not finished?", last);
   }
-  constexpr std::uint64_t kMaxHeaderBytes = 1 << 28;  // scene parameters may be some millions
+  constexpr std::uint64_t kMaxHeaderBytes = 1 << 28;  // scene parameters may take megabytes
   if (start.header_bytes > std::min(kMaxHeaderBytes, last - sizeof start) ||
       (sizeof start + start.header_bytes) % kRecordingAlignment != 0) {
     refuse(name(), "byte 8: a header of {} bytes cannot be: it ends at a multiple of {}",
@@ -80,7 +80,7 @@ std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t ind
   SceneInfo scene = fields.scene();
   origin_ = fields.origin();
 
-  // The initial pose takes 24 bytes a body: the file's length bounds all that follows.
+  // The initial pose takes 24 bytes a body: the file's length bounds all later sizes.
   const std::uint64_t offset = sizeof(RecordingStart) + size;
   const std::uint64_t last = bytes() - sizeof(RecordingEnd);
   const std::uint64_t index_bytes = sizeof(RecordedFrame) * (std::uint64_t{1} + scene.frames);
@@ -144,7 +144,7 @@ std::span<const Aabb> Recording2Reader::readBoxes(std::uint32_t index) {
 
 void Recording2Reader::readFrame(std::uint32_t index) {
   const bool follows = current_ && *current_ + 1 == index;
-  current_.reset();  // until all is read
+  current_.reset();  // invalid until the frame is complete
   hasher_.restart();
   readIds(index);
   if (index_[index].key == index) {
@@ -201,7 +201,7 @@ void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
 }
 
 void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
-  // Who relies on `changed` misses what changed without being named.
+  // Users of `changed` would miss an unlisted change.
   if (follows && changed_ < scene().objects) {
     readRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body, const Aabb& box) mutable {
       if (listed < changed_ && ids_[listed] == body) {

@@ -1,4 +1,4 @@
-// The header of a recording 2: JSON, and after it the numbers of each body that it announces.
+// The header of a recording 2: JSON, followed by the per-body arrays that it announces.
 
 #include "recording2_header.h"
 
@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::string_view kSchema = "broadmark-recording/2";
 
-/// Numbers of bodies that a header may announce: bytes of each, where they are in a filter, and how
-/// a body gets its own.
+/// A per-body array that a header may announce: its element size, its place in a filter, and how a
+/// body gets its value.
 struct Group {
   std::string_view key;
   std::uint64_t bytes;
@@ -44,7 +44,7 @@ constexpr Group kGroups[] = {
      }},
 };
 
-/// Those that a header announces, in the order of the list above.
+/// The announced arrays, in the order of the list above.
 std::vector<Group> groupsIn(const JsonFields& fields) {
   std::vector<Group> groups;
   const Json& keys = fields.array("groups");
@@ -77,7 +77,7 @@ std::string nameIn(const JsonFields& fields, const char* key) {
   std::string text = fields.text(key);
   if (isName(text)) return text;
   throw InputError(fmt::format("{}: at most {} printable ASCII characters are expected",
-                               fields.path(key), kLongestName));
+                               fields.path(key), kMaxNameLength));
 }
 
 Aabb worldIn(const JsonFields& fields) {

@@ -1,4 +1,4 @@
-// How a recording 2 is laid out, and its header; docs/recordings.md describes the bytes.
+// The layout of a recording 2, and its header; docs/recordings.md describes the bytes.
 #pragma once
 
 #include <array>
@@ -19,15 +19,15 @@
 
 namespace broadmark {
 
-/// Boxes as they lie in the file: six floats, min x y z, max x y z.
+/// Boxes in file layout: six floats, min x y z, max x y z.
 using PackedBox = std::array<float, 6>;
 
 inline PackedBox packed(const Aabb& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
 }
 
-/// Of a packed box. A corner at a time, which is a SIMD register: the checks that follow take a
-/// third as long as behind single floats.
+/// Loads a packed box a corner at a time, as a SIMD register: the checks that follow take a third
+/// as long as after scalar loads.
 inline Aabb unpacked(const std::byte* raw) {
   using Corner = float __attribute__((vector_size(16)));
   Corner min;
@@ -41,7 +41,7 @@ inline Aabb unpacked(const std::byte* raw) {
 
 inline constexpr std::array<char, 8> kRecording2Magic = {'B', 'R', 'D', 'M', 'A', 'R', 'K', '2'};
 
-/// Before the header, which is JSON.
+/// Precedes the header, which is JSON.
 struct RecordingStart {
   std::array<char, 8> magic = kRecording2Magic;
   std::uint64_t header_bytes = 0;
@@ -62,7 +62,7 @@ constexpr std::uint64_t alignedBytes(std::uint64_t bytes) {
   return (bytes + kRecordingAlignment - 1) / kRecordingAlignment * kRecordingAlignment;
 }
 
-/// What lies where in a frame: its ids, then its boxes. Where all changed, no ids.
+/// Byte offsets within a frame: its ids, then its boxes. No ids if all bodies changed.
 struct FrameLayout {
   std::uint64_t ids;
   std::uint64_t rows;
@@ -76,7 +76,7 @@ struct FrameLayout {
   }
 };
 
-/// "" or what is wrong with a box.
+/// "" or the fault of a box.
 std::string recordingFault(const Aabb& box, bool all_present);
 
 template <class T>
@@ -87,21 +87,21 @@ void appendBytes(std::vector<std::byte>& bytes, std::span<const T> values) {
   std::memcpy(bytes.data() + begin, values.data(), values.size_bytes());
 }
 
-/// All bytes before the first frame. Throws InputError if the scene cannot be recorded (names).
+/// All bytes before the first frame. Throws InputError for invalid names.
 std::vector<std::byte> recording2Header(const SceneInfo&, const RecordingOrigin&);
 
-/// The JSON of a header. All functions throw InputError naming the key and what would be right.
+/// A header's JSON. All functions throw InputError with the key and what would be right.
 class Recording2Header {
  public:
-  /// `name` stands for it in messages.
+  /// `name` is used in messages.
   Recording2Header(std::string_view text, const std::string& name);
 
-  /// But for the filter.
+  /// Without the filter.
   [[nodiscard]] SceneInfo scene() const;
   [[nodiscard]] RecordingOrigin origin() const;
-  /// Of what lies between header and first frame: the numbers of all bodies.
+  /// Size of the per-body arrays between header and first frame.
   [[nodiscard]] std::uint64_t groupBytes() const;
-  /// What these bytes mean.
+  /// Decodes these arrays.
   [[nodiscard]] CollisionFilter filter(std::span<const std::byte> groups) const;
 
  private:

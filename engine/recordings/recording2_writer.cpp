@@ -1,6 +1,6 @@
-// Writing recording 2. Key frames are set so that what lies between two of them takes no more than
-// a whole frame: the file is at most twice as large as without them, and a frame is at most two
-// whole frames away.
+// Writing recording 2. Key frames are placed so that the changes between two of them take no more
+// than a whole frame: the file is at most twice as large as without them, and a frame is at most
+// two whole frames away.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 namespace broadmark {
 namespace {
 
-/// Most frames from one key frame to the next: a frame in which little changed takes its time, too.
+/// Maximum distance of key frames: a frame with few changes takes time, too.
 constexpr std::uint32_t kMaxBetweenKeys = 256;
 
 class Recording2File final : public RecordingFile {
@@ -49,7 +49,7 @@ class Recording2File final : public RecordingFile {
   }
 
  private:
-  /// Looks at what has changed since the frame before, which was recordable.
+  /// Checks the changes since the frame before, which was recordable.
   void requireRecordable(const Frame& frame) const {
     const auto require = [&](std::size_t body) {
       if (isRecordable(frame.boxes[body], scene().all_present)) return;
@@ -63,7 +63,7 @@ class Recording2File final : public RecordingFile {
     }
   }
 
-  /// The key frame of the next frame, in which so many bodies changed.
+  /// The key frame of the next frame, which has `changed` changed bodies.
   std::uint32_t keyOf(std::uint32_t index, std::uint64_t changed) {
     since_key_ += changed * (sizeof(std::uint32_t) + sizeof(PackedBox));
     const std::uint64_t whole = sizeof(PackedBox) * std::uint64_t{scene().objects};
@@ -73,7 +73,7 @@ class Recording2File final : public RecordingFile {
     return index;
   }
 
-  /// Writes index and end.
+  /// Writes index and trailer.
   void complete() override {
     requireWhole(index_.size());
     block_.clear();
@@ -86,9 +86,9 @@ class Recording2File final : public RecordingFile {
 
   ChangeDetector changes_;
   std::vector<RecordedFrame> index_;
-  std::vector<std::byte> block_;  ///< what is written next
-  std::uint64_t since_key_ = 0;   ///< bytes of what changed since the last key frame
-  Hasher hasher_;                 ///< of all but the frames
+  std::vector<std::byte> block_;  ///< the next block to write
+  std::uint64_t since_key_ = 0;   ///< bytes of changes since the last key frame
+  Hasher hasher_;                 ///< over all but the frames
 };
 
 }  // namespace

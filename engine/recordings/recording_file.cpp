@@ -16,7 +16,7 @@ static_assert(sizeof(Aabb) == kRecordBytes);
 
 constexpr std::size_t kTextBytes = 128;
 
-/// Frames of no objects take no bytes, so the file's length does not bound their number.
+/// Frames without objects take no bytes, so the file's length does not bound their number.
 constexpr std::uint32_t kMaxEmptyFrames = 1'000'000;
 
 /// A NUL-padded text of the header.
@@ -43,11 +43,11 @@ std::uint32_t headerCount(std::int32_t value, std::string_view what, std::size_t
 }
 
 std::vector<std::byte> makeHeader(const SceneInfo& scene) {
-  constexpr auto kMost = static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max());
+  constexpr auto kMax = static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max());
   requireNames(scene);
-  if (scene.objects > kMost || scene.frames > kMost) {
+  if (scene.objects > kMax || scene.frames > kMax) {
     throw InputError(fmt::format("cannot record {} objects and {} frames: at most {} each",
-                                 scene.objects, scene.frames, kMost));
+                                 scene.objects, scene.frames, kMax));
   }
   if (scene.objects == 0 && scene.frames > kMaxEmptyFrames) {
     throw InputError(fmt::format("cannot record {} frames of no objects: at most {} are allowed",
@@ -66,7 +66,7 @@ std::vector<std::byte> makeHeader(const SceneInfo& scene) {
 }  // namespace
 
 bool isName(std::string_view text) {
-  return text.size() <= kLongestName &&
+  return text.size() <= kMaxNameLength &&
          std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
 }
 
@@ -75,7 +75,7 @@ void requireNames(const SceneInfo& scene) {
     if (isName(text)) return;
     throw InputError(
         fmt::format("cannot record the {} '{}': at most {} printable ASCII characters are allowed",
-                    what, text, kLongestName));
+                    what, text, kMaxNameLength));
   };
   require(scene.name, "scene name");
   require(scene.object_type, "object type");
@@ -146,7 +146,7 @@ void RecordingFile::append(std::vector<std::byte>& block) {
   std::swap(block, handed_);
   constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
   if (handed_.size() < kLarge) return store(handed_);
-  // Deferred, that is in waitForWrite(), where the system grants no more threads.
+  // Deferred, to waitForWrite(), if the system grants no more threads.
   writing_ = std::async(std::launch::async | std::launch::deferred, [this] { store(handed_); });
 }
 
@@ -168,7 +168,7 @@ void RecordingFile::waitForWrite() {
 }
 
 void RecordingFile::store(std::span<const std::byte> bytes) {
-  // In pieces, so that what was hashed is still in the cache when it is written.
+  // In blocks, so that hashed data are still in the cache when written.
   constexpr std::size_t kPiece = 1 << 18;
   for (std::size_t start = 0; start < bytes.size(); start += kPiece) {
     const auto piece = bytes.subspan(start, std::min(kPiece, bytes.size() - start));

@@ -1,4 +1,4 @@
-// What recordings share: the checks, and the file being written; and the header of the original's.
+// Shared code of the recording formats: validation, the file writer, and the original's header.
 #pragma once
 
 #include <fmt/format.h>
@@ -26,10 +26,10 @@
 
 namespace broadmark {
 
-/// Bytes that a box or a pose takes in a set.
+/// Bytes of a box or a pose in a set.
 inline constexpr std::size_t kRecordBytes = 32;
 
-/// The header as it lies in the file.
+/// The header in file layout.
 struct RecordingHeader {
   char name[128];
   char object_type[128];
@@ -39,22 +39,22 @@ struct RecordingHeader {
   Aabb world;
 };
 
-/// What a header states. Throws InputError naming `name` and the byte offset of what is wrong.
+/// Parses a header. Throws InputError with `name` and the byte offset of the fault.
 SceneInfo parseHeader(const RecordingHeader&, const std::string& name);
 
-/// Where set `set` begins.
+/// Byte offset of set `set`.
 std::uint64_t setOffset(const SceneInfo&, std::uint64_t set);
 
-/// Throws InputError naming the scene and what of it no recording holds.
+/// Throws InputError for names that recordings cannot hold.
 void requireNames(const SceneInfo&);
-/// Whether a scene or an object type may have this name.
+/// Whether the text is valid as the name of a scene or an object type.
 bool isName(std::string_view text);
 
-/// "" or what is wrong with a record.
+/// "" or the fault of a record.
 std::string fault(const Aabb&);
 std::string fault(const Pose&);
 
-// The same check without branches, enough for nearly all records. Comparisons with NaN are false.
+// A branchless check, sufficient for nearly all records. Comparisons with NaN are false.
 inline bool isSound(const Aabb& box) {
   constexpr float kHuge = std::numeric_limits<float>::max();
   // All axes at once: a corner is a SIMD register. Both compilers have this extension.
@@ -66,7 +66,7 @@ inline bool isSound(const Aabb& box) {
   return (sound[0] & sound[1] & sound[2]) != 0;
 }
 
-/// Whether a recording 2 may hold it: the same, or that of a body that may be absent.
+/// Whether a recording 2 may hold it: a sound box, or the empty box if bodies may be absent.
 inline bool isRecordable(const Aabb& box, bool all_present) {
   return isSound(box) || (!all_present && box == kEmptyBox);
 }
@@ -82,7 +82,7 @@ inline bool isSound(const Pose& pose) {
   return sound;
 }
 
-/// Throws InputError naming the first record for which isSound() is false. `first` is the number of
+/// Throws InputError with the first record for which isSound() is false. `first` is the index of
 /// the first of these records in the set.
 template <class Record>
 void requireValid(std::span<const Record> records, std::uint64_t set, const SceneInfo& scene,
@@ -97,21 +97,21 @@ void requireValid(std::span<const Record> records, std::uint64_t set, const Scen
                                setOffset(scene, set) + body * kRecordBytes, what, fault(*broken)));
 }
 
-/// A recording while it is written: hashed as it grows, there only after finish(). A large block is
+/// A recording being written: hashed incrementally, visible only after finish(). A large block is
 /// hashed and written while the caller makes the next one.
 class RecordingFile {
  public:
-  /// Writes to `path`, or for an empty one to an unnamed file in the temporary directory; `header`
-  /// comes first. Throws InputError if the path cannot be written.
+  /// Writes to `path`, or for an empty one to an unnamed file in the temporary directory; begins
+  /// with `header`. Throws InputError if the path cannot be written.
   RecordingFile(const std::filesystem::path& path, const SceneInfo&, std::vector<std::byte> header);
-  RecordingFile(const RecordingFile&) = delete;  // a block on its way refers to this
+  RecordingFile(const RecordingFile&) = delete;  // the writing thread refers to this
   RecordingFile& operator=(const RecordingFile&) = delete;
   virtual ~RecordingFile() = default;
 
-  /// Appends the boxes of the next frame, whatever its index. Throws InputError when one is broken,
-  /// or when the disc was full, at the latest in finish().
+  /// Appends the boxes of the next frame, whatever its index. Throws InputError for an invalid box,
+  /// or if the disc was full, at the latest in finish().
   virtual void write(const Frame&) = 0;
-  /// Completes the recording and gives the file its name. Returns its hash.
+  /// Completes the recording and renames the file. Returns its hash.
   std::string finish();
   /// Completes the recording and hands over the unnamed file.
   FileDescriptor finishTemporary();
@@ -119,15 +119,15 @@ class RecordingFile {
   [[nodiscard]] const std::string& name() const { return name_; }
 
  protected:
-  /// Appends a block, which is swapped for another buffer.
+  /// Appends a block, and swaps it for another buffer.
   void append(std::vector<std::byte>& block);
-  /// Bytes so far.
+  /// Bytes appended so far.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Checks that all frames were written, and appends what follows them.
+  /// Checks that all frames were written, and appends the trailer.
   virtual void complete() = 0;
-  /// Throws std::logic_error unless as many sets as the scene has frames were written.
+  /// Throws std::logic_error unless `sets` is the scene's number of frames.
   void requireWhole(std::uint64_t sets) const;
-  /// Throws std::logic_error unless a set has as many bodies as the scene.
+  /// Throws std::logic_error unless `bodies` is the scene's number of bodies.
   void requireBodies(std::size_t bodies) const;
 
  private:
@@ -141,34 +141,34 @@ class RecordingFile {
   FileDescriptor unnamed_;
   Hasher hasher_;
   std::uint64_t size_ = 0;
-  std::vector<std::byte> handed_;  ///< the last block, perhaps being written
-  std::future<void> writing_;      ///< last: its thread uses all of the above
+  std::vector<std::byte> handed_;  ///< the last block, possibly being written
+  std::future<void> writing_;      ///< last member: its thread uses all of the above
 };
 
 /// A .broadmark recording.
 std::unique_ptr<RecordingFile> makeRecording2File(const std::filesystem::path& path,
                                                   const SceneInfo&, const RecordingOrigin&);
 
-/// A recording laid out as the original's: .aabbs, or .posrot by append().
+/// A recording in the original's format: .aabbs, or .posrot by append().
 class OriginalRecordingFile final : public RecordingFile {
  public:
-  /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
+  /// Throws InputError for an invalid scene (names, counts) or if the path cannot be written.
   OriginalRecordingFile(const std::filesystem::path& path, const SceneInfo& scene);
 
   void write(const Frame& frame) override { append(frame.boxes, "box"); }
 
-  /// Appends a set. One with a broken record is not written.
+  /// Appends a set; not if a record is invalid.
   template <class Record>
   void append(std::span<const Record> records, std::string_view what) {
     append(records, what, std::as_bytes(records));
   }
-  /// Appends a set whose records lie differently in the file.
+  /// Appends a set of records with another layout in the file.
   template <class Record>
   void append(std::span<const Record> records, std::string_view what,
               std::span<const std::byte> bytes) {
     requireBodies(bytes.size() / kRecordBytes);
     filling_.resize(bytes.size());
-    // In pieces, so that what was checked is still in the cache when it is copied.
+    // In blocks, so that checked data are still in the cache when copied.
     constexpr std::size_t kPiece = 1 << 13;
     for (std::size_t first = 0; first < records.size(); first += kPiece) {
       const auto piece = records.subspan(first, std::min(kPiece, records.size() - first));
@@ -184,7 +184,7 @@ class OriginalRecordingFile final : public RecordingFile {
   void complete() override { requireWhole(sets_); }
 
   std::uint64_t sets_ = 0;
-  std::vector<std::byte> filling_;  ///< the set that is being appended
+  std::vector<std::byte> filling_;  ///< the set being assembled
 };
 
 }  // namespace broadmark

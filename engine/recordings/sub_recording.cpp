@@ -53,7 +53,7 @@ std::span<const Aabb> SubRecording::readBoxes(std::uint32_t index) {
 std::string partName(const SceneInfo& scene) {
   constexpr std::string_view kSuffix = " case";
   if (scene.name.ends_with(kSuffix)) return scene.name;
-  return scene.name.substr(0, kLongestName - kSuffix.size()).append(kSuffix);
+  return scene.name.substr(0, kMaxNameLength - kSuffix.size()).append(kSuffix);
 }
 
 std::string writePart(const std::filesystem::path& path, IndexedFrames& whole, const Part& part) {

@@ -1,6 +1,6 @@
-// Swept boxes around any frames. Where these know which bodies changed, a frame costs only as much
-// as the bodies that changed in it and in the frame before: one that stopped changes once more, as
-// its box shrinks to where it is.
+// Swept boxes around arbitrary frames. Where the changed bodies are known, the cost of a frame is
+// that of the bodies that changed in it and in the frame before: after a body stops, its swept box
+// shrinks once more.
 
 #include "broadmark/recordings/swept_frames.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
 
-// The next number; the largest ones stay, as boxes are finite.
+// The next lower float; the lowest one stays, as boxes are finite.
 float below(float value) { return std::nextafter(value, -kLargest); }
 float above(float value) { return std::nextafter(value, kLargest); }
 
@@ -34,7 +34,7 @@ Aabb sweptBox(const Aabb& before, const Aabb& now) {
 }
 
 std::string sweptName(const SceneInfo& scene) {
-  return scene.name.substr(0, kLongestName - kSweptSuffix.size()).append(kSweptSuffix);
+  return scene.name.substr(0, kMaxNameLength - kSweptSuffix.size()).append(kSweptSuffix);
 }
 
 std::string sweptHash(const std::string& hash) {
@@ -51,9 +51,9 @@ SweptFrames::SweptFrames(std::unique_ptr<IndexedFrames> frames)
 
 std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {
   if (index == 0 || last_ != index - 1) {
-    // To know what changed, the swept boxes of the frame before are needed.
+    // Change detection needs the swept boxes of the frame before.
     std::uint32_t first = index - std::min(index, 2U);
-    last_.reset();  // should reading fail
+    last_.reset();  // in case reading fails
     begin(first);
     while (first < index) advance(++first);
   } else {
@@ -77,7 +77,7 @@ void SweptFrames::begin(std::uint32_t index) {
     boxes_[body] = sweptBox(before_[body], before_[body]);
   }
   changed_.clear();
-  // Of these boxes any may be another in the next frame, unless this is the initial pose.
+  // Any of these boxes may differ in the next frame, except after the initial pose.
   moved_.resize(index == 0 ? 0 : boxes_.size());
   std::iota(moved_.begin(), moved_.end(), 0U);
 }

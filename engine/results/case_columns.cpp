@@ -64,7 +64,7 @@ JsonPlace derived(std::string path) {
   return {.path = std::move(path), .optional = true, .derived = true};
 }
 
-/// A column of what get(result) or get(result, summary) is. The title is by default the key.
+/// A column with the value get(result) or get(result, summary). The title defaults to the key.
 template <class Get>
 CaseColumn computed(const std::string& key, std::string_view title, JsonPlace json, Get get,
                     ColumnShown shown = {}) {
@@ -84,7 +84,7 @@ CaseColumn computed(const std::string& key, std::string_view title, JsonPlace js
           }};
 }
 
-/// A column of the member that get(result) refers to, which is in JSON, by default at the key.
+/// A column for the member that get(result) refers to; its JSON path defaults to the key.
 template <class Get>
 CaseColumn stored(const std::string& key, std::string_view title, JsonPlace json, Get get,
                   ColumnShown shown = {}) {
@@ -131,14 +131,14 @@ double meanInitialisation(R result) {
   return sum / static_cast<double>(result.repetitions.size());
 }
 
-/// Recordings of more bodies come later, also where their ids would not.
+/// Sorts recordings by number of bodies, unlike their ids.
 ColumnValue recordingOrder(R result) {
   const SceneInfo& scene = result.recording.scene;
   return fmt::format("{}\n{}\n{:010}\n{:010}\n{}", scene.name, scene.object_type, scene.objects,
                      scene.frames, recordingId(result.recording));
 }
 
-/// What ran, on what, and how it ended.
+/// Algorithm, recording and status.
 std::vector<CaseColumn> identity() {
   const auto scene = [](auto member) {
     return [member](auto& r) -> auto& { return r.recording.scene.*member; };
@@ -214,7 +214,7 @@ std::vector<CaseColumn> times() {
       computed("initialize_seconds", "initialisation", {"initialize_ns", JsonForm::seconds},
                meanInitialisation, {.known = Known::timed, .figure = true})};
   for (const auto& [phase, name] : kPhases.entries) {
-    if (phase == Phase::total) continue;  // that is seconds_per_frame
+    if (phase == Phase::total) continue;  // covered by seconds_per_frame
     columns.push_back(computed(fmt::format("{}_seconds", name), name,
                                {fmt::format("frames/{}", name), JsonForm::seconds, true},
                                [phase = phase](R r) { return r.meanSeconds(phase); },

@@ -58,7 +58,7 @@ FrameTable::FrameTable() : text_(headerOf(&ColumnShown::frames) + ",repetition,f
 }
 
 void FrameTable::begin(const CaseResult& result) {
-  case_ = rowOf(&ColumnShown::frames, result, {});  // none of these is of the summary
+  case_ = rowOf(&ColumnShown::frames, result, {});  // identity columns do not need the summary
 }
 
 void FrameTable::add(const FrameRow& row) {

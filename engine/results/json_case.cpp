@@ -17,7 +17,7 @@ Json jsonOf(const ColumnValue& value) {
   return nullptr;
 }
 
-/// What the table of columns says of a case.
+/// The columns of a case.
 Json columnsToJson(const CaseResult& result, const Summary& summary) {
   Json json = Json::object();
   for (const CaseColumn& column : caseColumns()) {
@@ -134,7 +134,7 @@ Json toJson(const FrameDifference& d) {
           {"invalid", toJson(d.invalid_pairs)}};
 }
 
-/// Files written before false and allowed extra pairs were told apart have "extra" for both, with
+/// Files from before the distinction of false and allowed extra pairs have "extra" for both, with
 /// the count of the false ones as "forbidden_count".
 FrameDifference differenceFrom(const JsonFields& json) {
   const auto count = [&](const char* key) { return json.integer<std::uint64_t>(key); };
@@ -195,7 +195,7 @@ CaseResult caseFrom(const JsonFields& json) {
   readRecording(json.object("recording"), result.recording);
   result.threads = json.integer<int>("threads", 1);
   result.vectorised = json.boolean("vectorised");
-  if (json.has("plugin")) result.plugin = json.text("plugin");  // not in earlier files
+  if (json.has("plugin")) result.plugin = json.text("plugin");  // missing in earlier files
   ParameterValues parameters;
   json.read("params", parameters);
   for (auto& [name, value] : parameters) {

@@ -1,4 +1,4 @@
-// A case's result as JSON, and back.
+// Conversion of a case's result to and from JSON.
 #pragma once
 
 #include "broadmark/harness/case_result.h"
@@ -10,7 +10,7 @@ Json caseToJson(const CaseResult&);
 /// Throws InputError.
 CaseResult caseFrom(const JsonFields&);
 
-/// The part with a value for each repetition or frame.
+/// Adds the values for each repetition or frame.
 void addFrames(Json& json, const CaseResult&);
 /// Throws InputError.
 void readFrames(const JsonFields&, CaseResult&);

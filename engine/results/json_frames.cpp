@@ -1,4 +1,4 @@
-// The part of a case's JSON with a value for each repetition or frame.
+// The values for each repetition or frame in a case's JSON.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ bool isUsed(Phase phase, const std::vector<Repetition>& repetitions) {
   });
 }
 
-/// Phases of compute devices only, left out where there is none.
+/// Phases of compute devices only, omitted if unused.
 bool isOptional(Phase phase) { return phase == Phase::upload || phase == Phase::download; }
 
 /// One array of nanoseconds per phase and repetition.
@@ -64,7 +64,7 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
   return repetitions;
 }
 
-/// An array for each name of a table: get(value of the name, place) for each of `count` places.
+/// An array for each name of a table: get(value of the name, index) for each of `count` indices.
 template <class Table, class Get>
 Json arraysOf(const Table& table, std::size_t count, Get&& get) {
   Json json = Json::object();
@@ -75,8 +75,8 @@ Json arraysOf(const Table& table, std::size_t count, Get&& get) {
   return json;
 }
 
-/// Calls take(value of the name, place, element, name for messages) for each element of these
-/// arrays, each of which must have `count`, or `complaint` says what is wrong.
+/// Calls take(value of the name, index, element, name for messages) for each element of these
+/// arrays. Each array must have `count` elements; `complaint` is the error message.
 template <class Table, class Take>
 void readArrays(const JsonFields& json, const Table& table, std::size_t count,
                 std::string_view complaint, Take&& take) {
@@ -90,7 +90,7 @@ void readArrays(const JsonFields& json, const Table& table, std::size_t count,
   }
 }
 
-/// Those of wrong pairs only where there are any.
+/// Counts of wrong pairs only where there are any.
 Json frameCountsToJson(const std::vector<FrameCounts>& frames) {
   const auto get = [&](FrameCount which, std::size_t f) { return frames[f][which]; };
   Json json = arraysOf(kFrameCounts, frames.size(), get);
@@ -131,7 +131,7 @@ void readFrames(const JsonFields& json, CaseResult& result) {
           repetitions[r].processor[which] = JsonFields::integerOf<std::uint64_t>(sum, name);
         });
   }
-  if (!json.has("conditions")) return;  // results/1 has no more
+  if (!json.has("conditions")) return;  // results/1 ends here
   const JsonFields counts = json.object("frame_counts");
   result.frames.resize(counts.array("pairs").size());
   readArrays(counts, kFrameCounts, result.frames.size(),

@@ -1,5 +1,5 @@
-// Results as JSON ("schema": "broadmark-results/2") and back: as one document, or as lines of which
-// each is whole by itself. Earlier files ("broadmark-results/1") are read, too.
+// Results as JSON ("schema": "broadmark-results/2") and back: as one document, or as lines that are
+// complete JSON each. Earlier files ("broadmark-results/1") are read, too.
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 namespace broadmark {
 namespace {
 
-/// Calls visit(key, value) for all that an environment has in JSON.
+/// Calls visit(key, value) for each JSON field of an environment.
 template <class SomeEnvironment, class Visit>
 void visitFields(SomeEnvironment& e, Visit&& visit) {
   visit("host", e.host);
@@ -39,7 +39,7 @@ Json toJson(const Environment& environment) {
 Environment environmentFrom(const JsonFields& json) {
   Environment environment;
   visitFields(environment, [&](std::string_view key, auto& value) {
-    const bool is_newer = key == "host" || key == "compute_devices";  // than the first files
+    const bool is_newer = key == "host" || key == "compute_devices";  // missing in the first files
     if (!is_newer || json.has(key.data())) json.read(key.data(), value);
   });
   return environment;
@@ -53,7 +53,7 @@ void requireResults(const JsonFields& file, std::string_view name) {
       fmt::format("{}: not a results file: \"schema\" is not \"{}\"", name, kResultsSchema));
 }
 
-/// Every case belongs to an environment that is there.
+/// Every case must refer to an existing environment.
 void requireEnvironments(const Results& results, std::string_view name) {
   for (const CaseResult& result : results.cases) {
     if (result.environment < results.environments.size()) continue;
@@ -66,19 +66,20 @@ Results documentFrom(const JsonFields& file) {
   Results results;
   if (file.text("schema") == kResults1) {
     results.environments = {environmentFrom(file.object("environment"))};
-    results.complete = true;  // it did not say
+    results.complete = true;  // not recorded in results/1
   } else {
-    file.eachObject("environments", [&](const JsonFields& one) {
-      results.environments.push_back(environmentFrom(one));
+    file.eachObject("environments", [&](const JsonFields& environment) {
+      results.environments.push_back(environmentFrom(environment));
     });
     results.complete = file.boolean("complete");
   }
   results.options = file.texts("options");
-  file.eachObject("cases", [&](const JsonFields& one) { results.cases.push_back(caseFrom(one)); });
+  file.eachObject(
+      "cases", [&](const JsonFields& test_case) { results.cases.push_back(caseFrom(test_case)); });
   return results;
 }
 
-/// Takes over one line but the first.
+/// Parses one line after the first.
 void takeLine(Results& results, const JsonFields& line) {
   if (results.complete) throw InputError(line.name() + ": after the line that ends the results");
   if (line.has("environment")) {
@@ -92,7 +93,7 @@ void takeLine(Results& results, const JsonFields& line) {
   }
 }
 
-/// The first line of a text; the text goes on after it.
+/// Splits off the first line of a text.
 std::string_view takeFirstLine(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
@@ -106,7 +107,7 @@ Results linesFrom(const JsonFields& first, std::string_view rest, std::string_vi
   for (int number = 2; !rest.empty(); ++number) {
     const bool whole = rest.find('\n') != std::string_view::npos;
     const std::string_view line = takeFirstLine(rest);
-    if (!whole && jsonOrNull(line).is_null()) break;  // the run ended while it was written
+    if (!whole && jsonOrNull(line).is_null()) break;  // the run ended during the write
     const std::string place = fmt::format("{}: line {}", name, number);
     const Json json = parseJson(line, place);
     takeLine(results, JsonFields(json, place));
@@ -114,11 +115,11 @@ Results linesFrom(const JsonFields& first, std::string_view rest, std::string_vi
   return results;
 }
 
-/// The first line of JSON Lines, or null for what is no such file.
+/// The first line of JSON Lines, or null for other files.
 Json headOfLines(std::string_view text) {
   Json head = jsonOrNull(takeFirstLine(text));
   const auto has = [&](const char* key) { return head.contains(key); };
-  // A document on one line, even a damaged one, has some of these.
+  // A document on one line, even a damaged one, has one of these keys.
   const bool is_document = has("cases") || has("environments") || has("environment");
   return head.is_object() && has("schema") && !is_document ? head : nullptr;
 }
@@ -147,7 +148,9 @@ std::string formatJsonResults(const Results& results) {
                {"environments", Json::array()},
                {"complete", results.complete},
                {"cases", Json::array()}};
-  for (const Environment& one : results.environments) json["environments"].push_back(toJson(one));
+  for (const Environment& environment : results.environments) {
+    json["environments"].push_back(toJson(environment));
+  }
   for (const CaseResult& result : results.cases) json["cases"].push_back(caseToJson(result));
   return formatJson(json);
 }

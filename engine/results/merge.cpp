@@ -1,4 +1,4 @@
-// Every run brings its environment; those that are the same but for their moment become one.
+// Environments that differ only in time and load are merged.
 
 #include "broadmark/results/merge.h"
 
@@ -10,7 +10,7 @@
 namespace broadmark {
 namespace {
 
-/// Whether both are the same machine and build.
+/// Whether both have the same machine and build.
 bool isSame(Environment a, const Environment& b) {
   a.started = b.started;
   a.load_average = b.load_average;
@@ -25,12 +25,12 @@ MergedResults mergeResults(const std::vector<Results>& runs) {
   std::vector<Environment>& environments = merged.results.environments;
   std::vector<CaseResult>& cases = merged.results.cases;
   std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> places;
-  for (const Results& run : runs) {
-    merged.results.complete &= run.complete;
-    for (CaseResult result : run.cases) {
-      const Environment& environment = run.environments[result.environment];
+  for (const Results& source : runs) {
+    merged.results.complete &= source.complete;
+    for (CaseResult result : source.cases) {
+      const Environment& environment = source.environments[result.environment];
       const auto known = std::ranges::find_if(
-          environments, [&](const Environment& one) { return isSame(one, environment); });
+          environments, [&](const Environment& other) { return isSame(other, environment); });
       result.environment = static_cast<std::size_t>(known - environments.begin());
       if (known == environments.end()) environments.push_back(environment);
       const auto [at, is_new] =

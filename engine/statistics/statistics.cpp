@@ -39,8 +39,8 @@ double autocovariance(std::span<const double> values, double centre, std::size_t
   return sum / static_cast<double>(values.size());
 }
 
-/// The lag from which on autocorrelations are noise: those of the next few are all small.
-std::size_t lastTellingLag(const std::vector<double>& covariances, std::size_t count) {
+/// The lag from which on autocorrelations are noise: the next few are all small.
+std::size_t lastSignificantLag(const std::vector<double>& covariances, std::size_t count) {
   const auto n = static_cast<double>(count);
   const double noise = 2 * std::sqrt(std::log10(n) / n) * covariances[0];
   constexpr std::size_t kRun = 5;
@@ -56,7 +56,7 @@ std::size_t shortestBlock(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(2 * std::cbrt(static_cast<double>(count))));
 }
 
-/// One at each value above the median, minus one below: what decides how sure the median is.
+/// +1 for each value above the median, -1 below: the signs that determine the median's variance.
 std::vector<double> sidesOfMedian(std::span<const double> values, double median) {
   std::vector<double> sides(values.size());
   std::ranges::transform(values, sides.begin(), [median](double value) {
@@ -86,7 +86,7 @@ double quantile(std::span<const double> values, double q) {
 
 double studentT975(double degrees) {
   // Exact to the digits given; in between and beyond, interpolated in 1/degrees, in which the
-  // quantile is nearly linear and convex, so never too small: 3 % too large at most below 1.5
+  // quantile is nearly linear and convex, so never too small: at most 3 % too large below 1.5
   // degrees, 0.6 % up to 3, 0.15 % up to 6, 0.02 % from 10 on.
   struct Row {
     double degrees, t;
@@ -110,8 +110,8 @@ double studentT975(double degrees) {
 }
 
 std::size_t blockLength(std::span<const double> values) {
-  constexpr std::size_t kFew = 8;
-  if (values.size() < kFew) return 1;
+  constexpr std::size_t kMinValues = 8;
+  if (values.size() < kMinValues) return 1;
   const auto n = static_cast<double>(values.size());
   const double centre = mean(values);
   std::vector<double> covariances;
@@ -120,7 +120,7 @@ std::size_t blockLength(std::span<const double> values) {
     covariances.push_back(autocovariance(values, centre, lag));
   }
   if (covariances[0] == 0) return 1;
-  const auto window = std::min(2 * lastTellingLag(covariances, values.size()), lags);
+  const auto window = std::min(2 * lastSignificantLag(covariances, values.size()), lags);
   double density = covariances[0];
   double curvature = 0;
   for (std::size_t lag = 1; lag <= window; ++lag) {
@@ -145,14 +145,14 @@ Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
   std::uniform_int_distribution<std::size_t> starts(0, count - 1);
   std::vector<double> resampled(kResamples);
   std::vector<std::size_t> drawn(count);
-  for (double& one : resampled) {
+  for (double& value : resampled) {
     for (std::size_t i = 0; i < count;) {
       std::size_t from = starts(random);
       for (std::size_t k = 0; k < block && i < count; ++k, ++i, ++from) drawn[i] = from % count;
     }
-    one = statistic(drawn);
+    value = statistic(drawn);
   }
-  // A few blocks know less than resampling them says, as a few values do (Student).
+  // Few blocks underestimate the variance, as few values do (Student).
   const double blocks = static_cast<double>(count) / static_cast<double>(block);
   const double widen = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
   return {estimate + widen * (quantile(resampled, 0.025) - estimate),

@@ -1,20 +1,20 @@
-// The four broad phases of PhysX for processors, alone:
-//  sap   sweep and prune on three axes, kept sorted from frame to frame
-//  mbp   "multi box pruning": regions of space, in each a sweep over boxes that stay sorted
-//  abp   "automatic box pruning": the same with regions of its own choice
-//  pabp  the same on several threads
-// O(m log n + k) and more where many move; O(n + k) space.
+// The four CPU broad phases of PhysX:
+//  sap   incremental sweep and prune on three axes
+//  mbp   "multi box pruning": incremental sweep and prune in given regions
+//  abp   "automatic box pruning": sweep and prune in regions chosen by PhysX
+//  pabp  abp on several threads
+// O(m log n + k) time, more if many bodies move; O(n + k) space.
 //
-// Used by the stand-alone interface (PxBroadPhase.h): told what was created, updated and removed,
-// they tell which pairs came and went. Bodies of layers that never meet each other are put into the
-// group of static bodies, the others each into one of its own, as advised there. MBP gets the four
-// by four regions that its documentation begins with, and up to sixteen by sixteen for many bodies,
-// as a region holds 65,534 of them (region_loads.h); the outermost ones have no end, as bodies
-// outside of all regions would not collide. A team of several gets a dispatcher of as many threads.
+// The stand-alone interface (PxBroadPhase.h) takes created, updated and removed bodies and returns
+// created and deleted pairs. As recommended there, bodies of non-colliding layers are in the group
+// of static bodies and every other body is in its own group. MBP has four by four regions, as in
+// its documentation, and up to sixteen by sixteen for many bodies, because a region holds at most
+// 65,534 bodies (region_loads.h). The outer regions are unbounded, because bodies outside of all
+// regions would not collide. A thread team has a dispatcher with the same number of threads.
 //
-// Bounds become integers that lose the last bit or two, so PhysX's pairs are candidates: in each
-// frame the boxes decide which of those that moved overlap, and the answer is exact. A pair begins
-// when PhysX says so, or when a candidate meets within these bits; it ends likewise.
+// PhysX rounds bounds to integers, so its pairs are candidates. Each frame tests the candidates
+// with moved bodies, and the answer is exact: a pair begins when PhysX creates it or when the boxes
+// of a candidate start to overlap, and it ends in the same way.
 //
 // Library: PhysX 5, NVIDIA.
 
@@ -37,42 +37,42 @@ namespace {
 using physx::PxBroadPhaseType;
 using physx::PxU32;
 
-/// MBP's regions on each of two axes: PhysX allows 256 in all.
+/// The number of MBP's regions per axis, for two axes. PhysX allows 256 regions in total.
 int regionsFor(std::size_t bodies) {
-  constexpr std::size_t kUsual = 16'384;  // bodies in one, if they are spread evenly
+  constexpr std::size_t kTargetLoad = 16'384;  // bodies per region, if spread evenly
   int regions = 4;
-  while (regions < 16 && bodies > kUsual * static_cast<std::size_t>(regions * regions))
+  while (regions < 16 && bodies > kTargetLoad * static_cast<std::size_t>(regions * regions))
     regions *= 2;
   return regions;
 }
 
-/// Those axes: not the one that points upwards.
+/// The horizontal axes, along which MBP's regions divide the world.
 constexpr std::array kDivided = {2, 0};
 
 physx::PxBounds3 boundsOf(const Aabb& box) {
   return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
 }
 
-/// PhysX's own threads, and what tells that they are done with a frame.
-class Workers {
+/// PhysX's threads, and the task manager that waits for them.
+class PhysXThreads {
  public:
-  explicit Workers(int threads)
+  explicit PhysXThreads(int threads)
       : dispatcher_(physx::PxDefaultCpuDispatcherCreate(static_cast<PxU32>(threads))),
         tasks_(physx::PxTaskManager::createTaskManager(PxGetFoundation().getErrorCallback(),
                                                        dispatcher_.get())) {}
 
-  /// Calls work(the task to go on with), and waits for that.
+  /// Calls work(continuation task) and waits for the task to complete.
   template <class Work>
   void run(Work work) {
-    Done done;
-    done.setContinuation(*tasks_, nullptr);
-    work(&done);
-    done.removeReference();
-    done.finished.wait();
+    CompletionTask completion;
+    completion.setContinuation(*tasks_, nullptr);
+    work(&completion);
+    completion.removeReference();
+    completion.finished.wait();
   }
 
  private:
-  struct Done final : physx::PxLightCpuTask {
+  struct CompletionTask final : physx::PxLightCpuTask {
     physx::PxSync finished;
 
     void run() override {}
@@ -80,7 +80,7 @@ class Workers {
       PxLightCpuTask::release();
       finished.set();
     }
-    const char* getName() const override { return "done"; }
+    const char* getName() const override { return "completion"; }
   };
 
   std::unique_ptr<physx::PxDefaultCpuDispatcher, ReleasePhysX> dispatcher_;
@@ -93,32 +93,32 @@ class PhysX final : public BroadPhase {
     physXFoundation();
     const physx::PxBroadPhaseDesc description(type);
     broad_phase_.reset(PxCreateBroadPhase(description));
-    if (!broad_phase_) throw UnsupportedError("PhysX: creates no broad phase");
+    if (!broad_phase_) throw UnsupportedError("PhysX: cannot create a broad phase");
   }
 
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     filter_ = scene.filter;
     team_ = &execution.team();
-    if (execution.threads() > 1) workers_.emplace(execution.threads());
+    if (execution.threads() > 1) threads_.emplace(execution.threads());
     const std::vector<std::uint32_t> bodies = first.presentBodies();
     const NonCollidingLayers layers(filter_, bodies);
-    const std::size_t room = first.boxes.size() + 1;  // PhysX reads a bit further
-    bounds_.assign(room, physx::PxBounds3(physx::PxVec3(0), physx::PxVec3(0)));
-    distances_.assign(room, 0);
+    const std::size_t count = first.boxes.size() + 1;  // PhysX reads past the last body
+    bounds_.assign(count, physx::PxBounds3(physx::PxVec3(0), physx::PxVec3(0)));
+    distances_.assign(count, 0);
     for (std::uint32_t body = 0; body < first.boxes.size(); ++body) {
       groups_.push_back(layers.contains(body) ? physx::PxGetBroadPhaseStaticFilterGroup()
                                               : physx::PxGetBroadPhaseDynamicFilterGroup(body));
     }
     groups_.push_back(0);
-    is_there_.assign(room, 0);
-    has_moved_.assign(room, 0);
-    parted_ = std::vector<PairBuffer>(static_cast<std::size_t>(team_->size()));
+    is_present_.assign(count, 0);
+    has_moved_.assign(count, 0);
+    ended_by_worker_ = std::vector<PairBuffer>(static_cast<std::size_t>(team_->size()));
     if (physx::PxBroadPhaseRegions* regions = broad_phase_->getRegions()) {
       loads_.emplace(scene.world, kDivided, regionsFor(first.boxes.size()), first.boxes.size());
       addRegions(*regions);
     }
-    for (const std::uint32_t body : bodies) takeOver(body, first.boxes[body]);
+    for (const std::uint32_t body : bodies) applyBox(body, first.boxes[body]);
     updateStructures();
     searchOverlaps();
   }
@@ -130,7 +130,7 @@ class PhysX final : public BroadPhase {
     created_.clear();
     updated_.clear();
     removed_.clear();
-    for (const std::uint32_t body : *frame.changed) takeOver(body, frame.boxes[body]);
+    for (const std::uint32_t body : *frame.changed) applyBox(body, frame.boxes[body]);
   }
 
   void cleanCache() override {
@@ -144,30 +144,30 @@ class PhysX final : public BroadPhase {
     const physx::PxBroadPhaseUpdateData data(
         created_.data(), count(created_), updated_.data(), count(updated_), removed_.data(),
         count(removed_), bounds_.data(), groups_.data(), distances_.data(), count(bounds_) - 1);
-    if (workers_) {
-      workers_->run([&](physx::PxBaseTask* next) { broad_phase_->update(data, next); });
+    if (threads_) {
+      threads_->run([&](physx::PxBaseTask* next) { broad_phase_->update(data, next); });
     } else {
       broad_phase_->update(data);
     }
     physx::PxBroadPhaseResults results;
     broad_phase_->fetchResults(results);
     PhysXErrors::instance().check();
-    if (loads_) loads_->settle();
+    if (loads_) loads_->endFrame();
     if (!removed_.empty()) dropRemoved();
     for (PxU32 i = 0; i < results.mNbDeletedPairs; ++i) {
       const Pair pair = pairOf(results.mDeletedPairs[i]);
-      if (areThere(pair) && isWanted(pair)) drop(pair);
+      if (arePresent(pair) && isWanted(pair)) drop(pair);
     }
     for (PxU32 i = 0; i < results.mNbCreatedPairs; ++i) {
       const Pair pair = pairOf(results.mCreatedPairs[i]);
-      if (isWanted(pair)) apart_.insert(PairRun(&pair, 1));
+      if (isWanted(pair)) separated_.insert(PairRun(&pair, 1));
     }
   }
 
   void searchOverlaps() override {
     if (!created_.empty() || !updated_.empty()) {
-      findParted();
-      findMet();
+      endSeparated();
+      beginOverlapping();
     }
     runs_ = {overlapping_.run(), began_.run(), ended_.run()};
   }
@@ -181,14 +181,15 @@ class PhysX final : public BroadPhase {
     visit("moves", updated_.size());
     visit("pairs begun", began_.size());
     visit("pairs ended", ended_.size());
-    visit("candidates", overlapping_.run().size() + apart_.run().size());
+    visit("candidates", overlapping_.run().size() + separated_.run().size());
   }
 
   [[nodiscard]] std::string validate() const override {
-    const auto overlapping = [this](Pair pair) { return areThere(pair) && overlap(pair); };
-    const auto apart = [this](Pair pair) { return areThere(pair) && !overlap(pair); };
-    if (!std::ranges::all_of(overlapping_.run(), overlapping)) return "a pair is apart";
-    if (!std::ranges::all_of(apart_.run(), apart)) return "a candidate overlaps";
+    const auto overlapping = [this](Pair pair) { return arePresent(pair) && overlap(pair); };
+    const auto apart = [this](Pair pair) { return arePresent(pair) && !overlap(pair); };
+    if (!std::ranges::all_of(overlapping_.run(), overlapping))
+      return "a reported pair does not overlap";
+    if (!std::ranges::all_of(separated_.run(), apart)) return "an overlapping pair is not reported";
     return {};
   }
 
@@ -197,8 +198,8 @@ class PhysX final : public BroadPhase {
     return orderedPair(pair.mID0, pair.mID1);
   }
 
-  [[nodiscard]] bool areThere(Pair pair) const {
-    return (is_there_[pair.a] & is_there_[pair.b]) != 0;
+  [[nodiscard]] bool arePresent(Pair pair) const {
+    return (is_present_[pair.a] & is_present_[pair.b]) != 0;
   }
 
   [[nodiscard]] bool isWanted(Pair pair) const { return filter_.wanted(pair.a, pair.b); }
@@ -209,65 +210,65 @@ class PhysX final : public BroadPhase {
     return bounds_[pair.a].intersects(bounds_[pair.b]);
   }
 
-  void takeOver(std::uint32_t body, const Aabb& box) {
+  void applyBox(std::uint32_t body, const Aabb& box) {
     const bool is_present = !isEmpty(box);
-    const bool was_there = is_there_[body] != 0;
-    is_there_[body] = has_moved_[body] = is_present ? 1 : 0;
+    const bool was_present = is_present_[body] != 0;
+    is_present_[body] = has_moved_[body] = is_present ? 1 : 0;
     if (is_present) bounds_[body] = boundsOf(box);
-    if (is_present) (was_there ? updated_ : created_).push_back(body);
-    if (!is_present && was_there) removed_.push_back(body);
+    if (is_present) (was_present ? updated_ : created_).push_back(body);
+    if (!is_present && was_present) removed_.push_back(body);
     if (!loads_) return;
     if (is_present) loads_->move(body, bounds_[body]);
-    if (!is_present && was_there) loads_->remove(body);
+    if (!is_present && was_present) loads_->remove(body);
   }
 
-  /// No longer a candidate.
+  /// Removes a candidate.
   void drop(Pair pair) {
     if (overlapping_.contains(pair)) {
       overlapping_.erase(PairRun(&pair, 1));
       ended_.add(pair.a, pair.b);
     } else {
-      apart_.erase(PairRun(&pair, 1));
+      separated_.erase(PairRun(&pair, 1));
     }
   }
 
-  /// PhysX does not tell of all pairs of removed bodies that they are gone.
+  /// PhysX does not report all deleted pairs of removed bodies.
   void dropRemoved() {
-    gone_.clear();
-    for (const PairRun candidates : {overlapping_.run(), apart_.run()}) {
+    pairs_of_removed_.clear();
+    for (const PairRun candidates : {overlapping_.run(), separated_.run()}) {
       for (const Pair pair : candidates) {
-        if (!areThere(pair)) gone_.push_back(pair);
+        if (!arePresent(pair)) pairs_of_removed_.push_back(pair);
       }
     }
-    for (const Pair pair : gone_) drop(pair);
+    for (const Pair pair : pairs_of_removed_) drop(pair);
   }
 
-  /// Pairs that no longer overlap, and are candidates yet.
-  void findParted() {
+  /// Ends pairs that no longer overlap; they remain candidates.
+  void endSeparated() {
     const PairRun pairs = overlapping_.run();
     team_->run(pairs.size(), [&](int worker, Range part) {
-      PairBuffer& parted = parted_[static_cast<std::size_t>(worker)];
-      parted.clear();
+      PairBuffer& ended = ended_by_worker_[static_cast<std::size_t>(worker)];
+      ended.clear();
       for (const Pair pair : pairs.subspan(part.begin, part.size())) {
-        if (hasMoved(pair) && !overlap(pair)) parted.add(pair.a, pair.b);
+        if (hasMoved(pair) && !overlap(pair)) ended.add(pair.a, pair.b);
       }
     });
-    for (const PairBuffer& parted : parted_) {
-      for (const Pair pair : parted.run()) {
+    for (const PairBuffer& ended : ended_by_worker_) {
+      for (const Pair pair : ended.run()) {
         drop(pair);
-        apart_.insert(PairRun(&pair, 1));
+        separated_.insert(PairRun(&pair, 1));
       }
     }
   }
 
-  /// Candidates that overlap now.
-  void findMet() {
-    met_.clear();
-    for (const Pair pair : apart_.run()) {
-      if (hasMoved(pair) && overlap(pair)) met_.push_back(pair);
+  /// Begins candidates that now overlap.
+  void beginOverlapping() {
+    overlapping_candidates_.clear();
+    for (const Pair pair : separated_.run()) {
+      if (hasMoved(pair) && overlap(pair)) overlapping_candidates_.push_back(pair);
     }
-    for (const Pair pair : met_) {
-      apart_.erase(PairRun(&pair, 1));
+    for (const Pair pair : overlapping_candidates_) {
+      separated_.erase(PairRun(&pair, 1));
       overlapping_.insert(PairRun(&pair, 1));
       began_.add(pair.a, pair.b);
     }
@@ -278,10 +279,10 @@ class PhysX final : public BroadPhase {
       for (int j = 0; j < loads_->count(); ++j) {
         physx::PxBounds3 bounds(physx::PxVec3(-PX_MAX_BOUNDS_EXTENTS),
                                 physx::PxVec3(PX_MAX_BOUNDS_EXTENTS));
-        const std::array<int, 2> place = {i, j};
+        const std::array<int, 2> index = {i, j};
         for (std::size_t side = 0; side < 2; ++side) {
-          bounds.minimum[static_cast<unsigned>(kDivided[side])] = loads_->low(side, place[side]);
-          bounds.maximum[static_cast<unsigned>(kDivided[side])] = loads_->high(side, place[side]);
+          bounds.minimum[static_cast<unsigned>(kDivided[side])] = loads_->low(side, index[side]);
+          bounds.maximum[static_cast<unsigned>(kDivided[side])] = loads_->high(side, index[side]);
         }
         regions.addRegion({bounds, nullptr}, false, bounds_.data(), distances_.data());
       }
@@ -291,24 +292,24 @@ class PhysX final : public BroadPhase {
   CollisionFilter filter_;
   ThreadTeam* team_ = nullptr;
   std::unique_ptr<physx::PxBroadPhase, ReleasePhysX> broad_phase_;
-  std::optional<Workers> workers_;
-  std::optional<RegionLoads> loads_;  ///< of MBP
-  // By body, with room for one more.
+  std::optional<PhysXThreads> threads_;
+  std::optional<RegionLoads> loads_;  ///< only for MBP
+  // By body, with an extra entry.
   std::vector<physx::PxBounds3> bounds_;
   std::vector<physx::PxBpFilterGroup> groups_;
   std::vector<float> distances_;
-  std::vector<std::uint8_t> is_there_;
-  std::vector<std::uint8_t> has_moved_;  ///< or come, in this frame
-  // PhysX's pairs, as far as they are wanted.
+  std::vector<std::uint8_t> is_present_;
+  std::vector<std::uint8_t> has_moved_;  ///< moved or appeared in this frame
+  // PhysX's pairs that pass the filter.
   PairSet overlapping_;
-  PairSet apart_;  ///< no more than the lost bits
-  // In this frame.
+  PairSet separated_;  ///< candidates that do not overlap
+  // Of the current frame.
   std::vector<PxU32> created_;
   std::vector<PxU32> updated_;
   std::vector<PxU32> removed_;
-  std::vector<Pair> gone_;
-  std::vector<Pair> met_;
-  std::vector<PairBuffer> parted_;  ///< by worker
+  std::vector<Pair> pairs_of_removed_;
+  std::vector<Pair> overlapping_candidates_;
+  std::vector<PairBuffer> ended_by_worker_;  ///< by worker
   PairBuffer began_;
   PairBuffer ended_;
   struct {

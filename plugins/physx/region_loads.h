@@ -108,8 +108,7 @@ class RegionLoads {
     if (++loads_[indexOf(i, j)] < kMaxLoad) return;
     throw UnsupportedError(
         "PhysX's MBP: a region holds up to 65,534 bodies, including those that leave it in the "
-        "same "
-        "frame");
+        "same frame");
   }
 
   std::array<int, 2> axes_;

@@ -34,7 +34,7 @@ def small_results(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
 def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
     """Runs a command of the package; returns exit status, standard output and standard error."""
 
-    def run(*arguments: object) -> tuple[int, str, str]:
+    def run_command(*arguments: object) -> tuple[int, str, str]:
         try:
             status = main([str(argument) for argument in arguments])
         except SystemExit as end:  # argparse
@@ -42,7 +42,7 @@ def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, 
         out, err = capfd.readouterr()
         return status, out, err
 
-    return run
+    return run_command
 
 
 @pytest.fixture(scope="session")

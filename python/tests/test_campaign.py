@@ -45,14 +45,14 @@ def write(tmp_path: pathlib.Path) -> Callable[..., pathlib.Path]:
 
 
 @pytest.fixture
-def run(tmp_path: pathlib.Path, command: Any) -> Callable[..., tuple[int, str, str]]:
+def launch(tmp_path: pathlib.Path, command: Any) -> Callable[..., tuple[int, str, str]]:
     """Runs the command on a campaign with the output folder "the output"."""
 
-    def run(file: pathlib.Path, *options: str) -> tuple[int, str, str]:
+    def launch(file: pathlib.Path, *options: str) -> tuple[int, str, str]:
         status, out, err = command("campaign", file, "--output", tmp_path / "the output", *options)
         return int(status), str(out), str(err)
 
-    return run
+    return launch
 
 
 def attempts(folder: pathlib.Path) -> dict[str, bytes]:
@@ -65,7 +65,7 @@ def results(folder: pathlib.Path) -> broadmark.Results:
     return broadmark.read_results(folder / "the output/results.json")
 
 
-def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_every_case_is_run_once(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
     blocks = [
         BLOCK | {"seed": [1, 2], "parameters": {"density": [0.05, 0.1]}, "objects": 20},
         BLOCK | {"scenes": ["freefall"], "engine": ["kinematic", "bullet"], "objects": 20},
@@ -76,7 +76,7 @@ def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) ->
         "parameters": {"kd-mt:margin": [0, 0.1]},
     }
     file = write(recordings=blocks, algorithm=["bf", "bf-mt", own], threads=2, repetitions=2)
-    status, out, err = run(file)
+    status, out, err = launch(file)
     assert status == 0, err
     cases = results(tmp_path).cases
     assert len(cases) == 6 * 10  # recordings, variants
@@ -91,22 +91,22 @@ def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) ->
     assert f"{len(cases)} of {len(cases)} cases" in err  # the last line of progress
 
     before = attempts(tmp_path)
-    status, out, err = run(file)
+    status, out, err = launch(file)
     assert status == 0 and err == "" and attempts(tmp_path) == before
     assert f"written: {tmp_path / 'the output/results.json'}" in out
 
 
-def test_a_campaign_can_request_events(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_campaign_can_request_events(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
     file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd"], answer="events")
-    status, _, err = run(file)
+    status, _, err = launch(file)
     assert status == 0, err
     cases = results(tmp_path).cases
     assert set(cases["answer"]) == {"events"} and set(cases["status"]) == {"ok"}
     assert all("/events" in id_ for id_ in cases["id"])
 
 
-def test_results_identify_their_recordings(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
-    assert run(write(), "--quiet")[2] == ""
+def test_results_identify_their_recordings(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
+    assert launch(write(), "--quiet")[2] == ""
     moved = tmp_path / "moved"
     (tmp_path / "the output").rename(moved)
     case = broadmark.read_results(moved / "results.json").cases.iloc[0]
@@ -114,7 +114,9 @@ def test_results_identify_their_recordings(write: Any, run: Any, tmp_path: pathl
     assert "ok" in again
 
 
-def test_recordings_past_the_cap_are_not_run(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_recordings_past_the_cap_are_not_run(
+    write: Any, launch: Any, tmp_path: pathlib.Path
+) -> None:
     blocks = [BLOCK | {"objects": [20, 40, 80]}, BLOCK | {"objects": 40, "seed": 2}]
     file = write(
         recordings=blocks,
@@ -122,7 +124,7 @@ def test_recordings_past_the_cap_are_not_run(write: Any, run: Any, tmp_path: pat
         parameters={"phase_us": [1, 3000]},
         time_limit=0.01,
     )
-    status, out, _ = run(file)
+    status, out, _ = launch(file)
     assert status == 0  # a timeout is not a failure of the campaign
     cases = results(tmp_path).cases
     slow = cases[cases["params"] == "phase_us=3000"]
@@ -140,22 +142,22 @@ def test_recordings_past_the_cap_are_not_run(write: Any, run: Any, tmp_path: pat
 
 
 def test_recordings_without_pending_variants_are_not_baked(
-    write: Any, run: Any, tmp_path: pathlib.Path
+    write: Any, launch: Any, tmp_path: pathlib.Path
 ) -> None:
     file = write(algorithm=["time-validator"], time_limit=0.001)
-    assert run(file)[0] == 0
+    assert launch(file)[0] == 0
     (recording,) = (tmp_path / "the output/recordings").rglob("*.aabbs")
     assert " N20 " in recording.name
 
 
 def test_large_recordings_are_split_from_small_ones(
-    write: Any, run: Any, tmp_path: pathlib.Path
+    write: Any, launch: Any, tmp_path: pathlib.Path
 ) -> None:
     blocks = [
         BLOCK | {"objects": 10, "frames": 8},
         BLOCK | {"objects": [80, 640], "frames": 4, "split": True},
     ]
-    assert run(write(recordings=blocks))[0] == 0
+    assert launch(write(recordings=blocks))[0] == 0
     cases = results(tmp_path).cases
     assert sorted(set(zip(cases["objects"], cases["frames"]))) == [(10, 8), (80, 4), (640, 4)]
     assert set(cases["status"]) == {"ok"}
@@ -164,11 +166,11 @@ def test_large_recordings_are_split_from_small_ones(
     assert parameters["engine"] == "splitter"
 
 
-def test_a_campaign_can_be_extended(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
-    assert run(write(algorithm=["bf"]))[0] == 0
+def test_a_campaign_can_be_extended(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
+    assert launch(write(algorithm=["bf"]))[0] == 0
     before = attempts(tmp_path)
     larger = BLOCK | {"objects": [20, 40, 80]}
-    assert run(write(recordings=[larger, larger], algorithm=["bf", "kd"]))[0] == 0
+    assert launch(write(recordings=[larger, larger], algorithm=["bf", "kd"]))[0] == 0
     assert before.items() < attempts(tmp_path).items()
     assert len(results(tmp_path).cases) == 6
 
@@ -180,41 +182,41 @@ def test_a_campaign_can_be_extended(write: Any, run: Any, tmp_path: pathlib.Path
         ({"threads": [1], "recordings": [larger]}, "it runs bf, kd with other"),
     ):
         for option in ("--quiet", "--list"):
-            status, _, err = run(write(**change), option)
+            status, _, err = launch(write(**change), option)
             assert status == 2 and f"holds another campaign: {what}" in err, err
     assert (tmp_path / "the output/campaign.json").read_bytes() == kept
 
 
-def test_the_list_runs_nothing(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
-    status, out, err = run(write(), "--list")
+def test_the_list_runs_nothing(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
+    status, out, err = launch(write(), "--list")
     assert status == 0 and not (tmp_path / "the output").exists()
     assert "brownian cubes N40 F5 kinematic seed=1  to bake" in out
     assert "0 cases are finished, 4 remain; 2 recordings remain to be baked" in out
 
 
-def test_a_single_recording_can_be_run(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_single_recording_can_be_run(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
     name = "brownian cubes N40 F5 kinematic seed=1"
     file = write()
-    assert run(file, "--recording", name, "--bake")[0] == 0
+    assert launch(file, "--recording", name, "--bake")[0] == 0
     assert len(list((tmp_path / "the output/recordings").rglob("*.aabbs"))) == 1
     assert not attempts(tmp_path)
     copies = tmp_path / "local"
     copies.mkdir()
-    assert run(file, "--recording", name, "--copy-to", str(copies))[0] == 0
+    assert launch(file, "--recording", name, "--copy-to", str(copies))[0] == 0
     assert list(attempts(tmp_path)) == [f"{name}/1.jsonl"]
     assert not list(copies.iterdir())
-    status, out, err = run(file, "--merge")
+    status, out, err = launch(file, "--merge")
     assert status == 0 and len(results(tmp_path).cases) == 2
     assert results(tmp_path).partial  # half of the campaign
-    status, _, err = run(file, "--recording", "brownian")
+    status, _, err = launch(file, "--recording", "brownian")
     assert status == 2 and "not a recording shown by --list" in err
 
 
 def test_wrong_answers_do_not_stop_a_campaign(
-    write: Any, run: Any, tmp_path: pathlib.Path, faulty_plugin: str
+    write: Any, launch: Any, tmp_path: pathlib.Path, faulty_plugin: str
 ) -> None:
     block = BLOCK | {"objects": [200, 300], "frames": 300, "engine": "bullet"}
-    status, out, _ = run(
+    status, out, _ = launch(
         write(recordings=[block], algorithm=["faulty", "kd"], plugin=faulty_plugin)
     )
     assert status == 1
@@ -222,23 +224,23 @@ def test_wrong_answers_do_not_stop_a_campaign(
 
 
 def test_engines_of_plugins_bake(
-    write: Any, run: Any, tmp_path: pathlib.Path, engine_plugin: str
+    write: Any, launch: Any, tmp_path: pathlib.Path, engine_plugin: str
 ) -> None:
     block = BLOCK | {"engine": "drift", "parameters": {"drift": 2}}
-    status, _, err = run(write(recordings=[block], plugin=engine_plugin))
+    status, _, err = launch(write(recordings=[block], plugin=engine_plugin))
     assert status == 0, err
     assert set(results(tmp_path).cases["status"]) == {"ok"}
 
 
 def test_a_failed_recording_does_not_stop_the_others(
-    write: Any, run: Any, tmp_path: pathlib.Path
+    write: Any, launch: Any, tmp_path: pathlib.Path
 ) -> None:
     file = write()
-    assert run(file, "--bake")[0] == 0
+    assert launch(file, "--bake")[0] == 0
     broken = next((tmp_path / "the output/recordings").rglob("*N20*.aabbs"))
     sidecar = broken.with_suffix(".json")
     sidecar.write_text(sidecar.read_text().replace('"seed": 1', '"seed": 2'))
-    status, _, err = run(file)
+    status, _, err = launch(file)
     assert status == 2 and "N20 F5 kinematic seed=1: " in err and "baked before" in err, err
     assert list(results(tmp_path).cases["objects"]) == [40, 40]
 
@@ -301,7 +303,7 @@ def test_after_an_interruption_no_finished_case_is_run_again(
     interruption: str,
     long_campaign: pathlib.Path,
     start: Any,
-    run: Any,
+    launch: Any,
     tmp_path: pathlib.Path,
 ) -> None:
     process = start(long_campaign)
@@ -323,7 +325,7 @@ def test_after_an_interruption_no_finished_case_is_run_again(
     before = finished_cases(tmp_path)
     assert not (tmp_path / "the output/results.json").exists()
 
-    assert run(long_campaign)[0] == 0
+    assert launch(long_campaign)[0] == 0
     after = finished_cases(tmp_path)
     assert before.items() <= after.items() and len(before) < len(after) == 6
     cases = results(tmp_path).cases
@@ -340,7 +342,7 @@ def test_after_a_disk_failure_the_same_command_resumes(
     fault: str,
     write: Any,
     start: Any,
-    run: Any,
+    launch: Any,
     fault_injection: str,
     tmp_path: pathlib.Path,
 ) -> None:
@@ -360,7 +362,7 @@ def test_after_a_disk_failure_the_same_command_resumes(
     assert killed or "No space left on device" in err
     before = finished_cases(tmp_path)
 
-    status, _, err = run(file)
+    status, _, err = launch(file)
     assert status == 0, err
     assert before.items() <= finished_cases(tmp_path).items()
     cases = results(tmp_path).cases
@@ -378,10 +380,10 @@ def test_after_a_disk_failure_the_same_command_resumes(
     ],
 )
 def test_unfinished_cases_are_run_again(
-    text: str, replacement: str, write: Any, run: Any, tmp_path: pathlib.Path
+    text: str, replacement: str, write: Any, launch: Any, tmp_path: pathlib.Path
 ) -> None:
     file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd", "sap"])
-    assert run(file)[0] == 0
+    assert launch(file)[0] == 0
     path = next((tmp_path / "the output/runs").glob("*/1.jsonl"))
     lines = path.read_text().splitlines(keepends=True)
     assert text in lines[2]
@@ -390,7 +392,7 @@ def test_unfinished_cases_are_run_again(
     path.unlink()
     before = finished_cases(tmp_path)
     assert len(before) == 1
-    assert run(file)[0] == 0
+    assert launch(file)[0] == 0
     assert before.items() < finished_cases(tmp_path).items()
     cases = results(tmp_path).cases
     assert len(cases) == 3 and cases["id"].is_unique and set(cases["status"]) == {"ok"}
@@ -503,17 +505,17 @@ def test_remaining_time_follows_finished_cases(write: Any) -> None:
     ],
 )
 def test_invalid_files_are_rejected(
-    write: Any, run: Any, keys: dict[str, Any], message: str, tmp_path: pathlib.Path
+    write: Any, launch: Any, keys: dict[str, Any], message: str, tmp_path: pathlib.Path
 ) -> None:
     file = write(**keys)
-    status, _, err = run(file)
+    status, _, err = launch(file)
     assert status == 2 and f"broadmark: {file}: " in err and message in err, err
     assert not (tmp_path / "the output").exists()
 
 
-def test_invalid_json_is_rejected(run: Any, tmp_path: pathlib.Path) -> None:
+def test_invalid_json_is_rejected(launch: Any, tmp_path: pathlib.Path) -> None:
     file = tmp_path / "some.json"
-    assert "cannot be read" in run(file)[2]
+    assert "cannot be read" in launch(file)[2]
     for text in (
         "",
         "[]",
@@ -521,7 +523,7 @@ def test_invalid_json_is_rejected(run: Any, tmp_path: pathlib.Path) -> None:
         '{"schema": "broadmark-campaign/1", "schema": "broadmark-campaign/1"}',
     ):
         file.write_text(text)
-        status, _, err = run(file)
+        status, _, err = launch(file)
         assert status == 2 and str(file) in err
 
 

@@ -1,4 +1,4 @@
-// What a scene and its bodies may be, and the boxes and the object type of its bodies.
+// Validation of scenes and their bodies, and the boxes and object type of the bodies.
 
 #include "broadmark/scenes/authored_scene.h"
 
@@ -34,7 +34,7 @@ std::string outOfRange(std::string_view key, double most) {
   return fmt::format("{}: numbers from {:g} to {:g} are expected", key, -most, most);
 }
 
-/// The same with the body's id.
+/// The same, with the body's id.
 std::string faultOfBody(const AuthoredBody& body, std::size_t id) {
   const std::string fault = faultOfBody(body);
   return fault.empty() ? fault : fmt::format("body {}: {}", id, fault);
@@ -83,11 +83,11 @@ std::string faultOfLayer(std::string_view key) {
 std::string faultOfName(std::string_view name) {
   const bool printable =
       std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~' && c != '/'; });
-  if (printable && !name.empty() && name.size() <= kLongestName) return {};
+  if (printable && !name.empty() && name.size() <= kMaxNameLength) return {};
   return fmt::format(
       "name: 1 to {} printable ASCII characters are expected, none of them '/': it becomes part of "
       "file names",
-      kLongestName);
+      kMaxNameLength);
 }
 
 std::string faultOfWorld(const Aabb& world) {

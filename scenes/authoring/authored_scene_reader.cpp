@@ -1,5 +1,5 @@
-// Authored scenes from JSON. Scenes may have millions of bodies: each is taken over and forgotten
-// as soon as it has been read, so that there is never a tree of all of them. O(length).
+// Authored scenes from JSON. Scenes may have millions of bodies: each is converted and freed as
+// soon as it was read, so the JSON of all bodies is never in memory. O(length).
 
 #include <fmt/format.h>
 
@@ -22,11 +22,11 @@
 namespace broadmark::scenes {
 namespace {
 
-// More than any object or array has, but for that of the bodies: nothing worse is kept in memory.
+// More than any object or array except the bodies has: bounds the memory for invalid input.
 constexpr std::size_t kMaxElements = 2000;
 constexpr std::size_t kMaxDepth = 6;
 
-// Each takes a value over, or returns what would be right.
+// Each converts a value, or returns a description of the expected value.
 
 const char* take(const Json& json, std::string& value) {
   if (!json.is_string()) return "a text";
@@ -47,7 +47,7 @@ const char* take(const Json& json, Number& value) {
   return nullptr;
 }
 
-/// What is no whole number, or too large a one, becomes a number that no property may have.
+/// Replaces non-integers and numbers that are too large by a number that is invalid everywhere.
 template <std::unsigned_integral Number>
 const char* take(const Json& json, Number& value) {
   constexpr Number kFault = std::numeric_limits<Number>::max() - 1;
@@ -66,23 +66,25 @@ const char* take(const Json& json, std::array<Number, count>& values) {
   return count == 4 ? "an array of four numbers" : "an array of three numbers";
 }
 
-/// Of layers, or of pairs of them.
+/// For layers, or pairs of layers.
 template <class Layers>
 const char* take(const Json& json, std::vector<Layers>& values) {
-  const auto right = [&](const Json& one) { return take(one, values.emplace_back()) == nullptr; };
+  const auto right = [&](const Json& element) {
+    return take(element, values.emplace_back()) == nullptr;
+  };
   if (json.is_array() && std::ranges::all_of(json, right)) return nullptr;
   return std::is_integral_v<Layers> ? "an array of layers"
                                     : "an array of pairs of layers, each [a, b],";
 }
 
-/// Builds the scene as the text is read.
+/// Builds the scene during parsing.
 class SceneReader final : public JsonEvents {
  public:
   using JsonEvents::JsonEvents;
 
-  /// The scene, after the whole text has been read.
+  /// The scene, once the whole text was read.
   AuthoredScene finish() {
-    part_ = Part::other;
+    part_ = Section::other;
     std::string schema;
     require(root_, {"schema", "name", "world", "parameters", "collide", "triggers", "bodies"});
     if (!read(root_, "schema", schema)) expected("schema", kAuthoredSceneSchema);
@@ -108,7 +110,7 @@ class SceneReader final : public JsonEvents {
   bool string(string_t& value) override { return add(std::move(value)); }
 
   bool number_float(number_float_t value, const string_t& text) override {
-    // Of a float from the text: rounding to a double first could give a neighbour of it.
+    // Directly from the text to float: rounding to a double first could give a neighbouring float.
     auto nearest = static_cast<float>(value);
     std::from_chars(text.data(), text.data() + text.size(), nearest);
     const bool is_float = !open_.empty() && (open_.back()->is_array() || key_ == "sphere");
@@ -117,10 +119,10 @@ class SceneReader final : public JsonEvents {
 
   bool key(string_t& key) override {
     const Json& object = *open_.back();
-    if (open_.size() == 1) part_ = Part::other;
+    if (open_.size() == 1) part_ = Section::other;
     if (object.contains(key)) fail(fmt::format("'{}' is stated twice", onOneLine(key)));
     if (open_.size() == 1) {
-      part_ = key == "bodies" ? Part::bodies : key == "world" ? Part::world : Part::other;
+      part_ = key == "bodies" ? Section::bodies : key == "world" ? Section::world : Section::other;
     }
     key_ = std::move(key);
     return true;
@@ -137,7 +139,7 @@ class SceneReader final : public JsonEvents {
   }
 
   bool end_object() override {
-    if (open_.size() == 3 && part_ == Part::bodies) readBody(*open_.back());
+    if (open_.size() == 3 && part_ == Section::bodies) readBody(*open_.back());
     open_.pop_back();
     return true;
   }
@@ -148,12 +150,12 @@ class SceneReader final : public JsonEvents {
   }
 
  private:
-  enum class Part { other, world, bodies };
+  enum class Section { other, world, bodies };
 
   [[noreturn]] void fail(const std::string& what) const {
     std::string place = name();
-    if (part_ == Part::world) place += ": world";
-    if (part_ == Part::bodies && open_.size() > 2) {
+    if (part_ == Section::world) place += ": world";
+    if (part_ == Section::bodies && open_.size() > 2) {
       place += fmt::format(": body {}", scene_.bodies.size());
     }
     throw InputError(fmt::format("{}: {}", place, what));
@@ -174,14 +176,14 @@ class SceneReader final : public JsonEvents {
     }
   }
 
-  /// Adds a value to what is being read.
+  /// Adds a value to the present container.
   Json& keep(Json value) {
     if (open_.empty()) {
       if (!value.is_object()) fail("a JSON object is expected");
       return root_ = std::move(value);
     }
-    const bool is_bodies = part_ == Part::bodies && open_.size() == 1;
-    const bool is_body = part_ == Part::bodies && open_.size() == 2;
+    const bool is_bodies = part_ == Section::bodies && open_.size() == 1;
+    const bool is_body = part_ == Section::bodies && open_.size() == 2;
     if ((is_bodies && !value.is_array()) || (is_body && !value.is_object())) {
       expected("bodies", "an array of objects");
     }
@@ -189,7 +191,7 @@ class SceneReader final : public JsonEvents {
     if (around.size() == kMaxElements) fail(fmt::format("{}: too many values", onOneLine(key_)));
     if (open_.size() == kMaxDepth) fail(fmt::format("{}: nested too deeply", onOneLine(key_)));
     if (is_body && !around.empty()) {
-      around[0].clear();  // the one before, whose memory serves again
+      around[0].clear();  // the previous body, to reuse its memory
       return around[0];
     }
     if (around.is_object()) return around[key_] = std::move(value);
@@ -202,7 +204,7 @@ class SceneReader final : public JsonEvents {
     return true;
   }
 
-  /// Takes a value over; false where there is none.
+  /// Converts a value; returns false if it is missing.
   template <class Value>
   bool read(const Json& object, const char* key, Value& value) const {
     const auto found = object.find(key);
@@ -242,14 +244,14 @@ class SceneReader final : public JsonEvents {
     if (!root_.contains("world")) return;
     const Json& world = root_["world"];
     if (!world.is_object()) expected("world", "an object");
-    part_ = Part::world;
+    part_ = Section::world;
     require(world, {"min", "max"});
     Vec3 min;
     Vec3 max;
     if (!read(world, "min", min) || !read(world, "max", max)) {
       fail("'min' and 'max' are expected");
     }
-    part_ = Part::other;
+    part_ = Section::other;
     scene_.world = {{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}};
   }
 
@@ -271,7 +273,7 @@ class SceneReader final : public JsonEvents {
     }
   }
 
-  /// Checks the parameters and keeps them as text: equal values become equal texts.
+  /// Validates the parameters and stores them as normalised text.
   void readParameters() {
     if (!root_.contains("parameters")) return;
     const Json& stated = root_["parameters"];
@@ -288,10 +290,10 @@ class SceneReader final : public JsonEvents {
   }
 
   AuthoredScene scene_;
-  Json root_;                ///< but for bodies that have been read
-  std::vector<Json*> open_;  ///< objects and arrays that are being read, each in the one before
-  Part part_ = Part::other;  ///< of the scene
-  std::string key_;          ///< the last key
+  Json root_;                      ///< without bodies already read
+  std::vector<Json*> open_;        ///< open objects and arrays, each nested in the previous
+  Section part_ = Section::other;  ///< of the scene
+  std::string key_;                ///< the last key
 };
 
 }  // namespace

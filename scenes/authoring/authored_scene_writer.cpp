@@ -1,4 +1,4 @@
-// Authored scenes to JSON, straight from the bodies: scenes may have millions of them. O(length).
+// Authored scenes to JSON, directly from the bodies: scenes may have millions of them. O(length).
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,7 +20,7 @@
 namespace broadmark::scenes {
 namespace {
 
-/// The shortest text that reads back as the same number, with the sign of zero.
+/// The shortest text that round-trips, with the sign of zero.
 template <class Number>
 void append(std::string& text, Number value) {
   text +=
@@ -37,7 +37,7 @@ void append(std::string& text, const std::array<float, count>& values) {
   text += ']';
 }
 
-/// Whether it is written anyhow: negative zero equals zero, but is not the same.
+/// Whether it must be written although equal to the default: negative zero equals zero.
 bool hasSigns(std::span<const float> values) {
   return std::ranges::any_of(values, [](float value) { return std::signbit(value); });
 }
@@ -71,7 +71,7 @@ void appendParameters(std::string& text, const ParameterValues& stated) {
   }
 }
 
-/// Which layers collide and which are triggers, unless all collide and none is.
+/// Colliding layers and triggers, unless at their defaults.
 void appendLayers(std::string& text, const AuthoredScene& scene) {
   std::vector<std::string> pairs;
   std::vector<std::size_t> triggers;

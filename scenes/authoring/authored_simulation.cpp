@@ -43,7 +43,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
   [[nodiscard]] AuthoredScene document() override {
     AuthoredScene document = scene_;
     ParameterValues values = parameters_.values();
-    // Unchanged ones stay as they are stated, so that a file that is saved again stays the same.
+    // Unchanged values keep their text, so that saving again gives the same file.
     if (values != AuthoredParameters(scene_.parameters).values()) {
       document.parameters = std::move(values);
     }
@@ -52,7 +52,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
 
   [[nodiscard]] std::filesystem::path input() const override { return file_; }
 
-  /// Of the bodies and the parameters that the scene states, not of the file's layout.
+  /// Covers the scene's bodies and parameters, not the file's layout.
   [[nodiscard]] std::string inputHash() override {
     if (hash_.empty()) {
       const std::string text = formatAuthoredScene(scene_);
@@ -78,7 +78,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
     return parameters_.createEngine();
   }
 
-  /// Those that collide, but for triggers.
+  /// The colliding layers, without triggers.
   [[nodiscard]] LayerMatrix pushing(const SceneInfo&) const override {
     LayerMatrix layers = scene_.collide;
     for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
@@ -101,7 +101,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
     engine().setGravity(parameters_.gravity());
   }
 
-  void comeAndGo(std::uint32_t frame) override {
+  void updatePresence(std::uint32_t frame) override {
     const auto [first, last] = changes_.equal_range(frame);
     for (auto change = first; change != last; ++change) {
       const std::size_t id = change->second;
@@ -127,10 +127,10 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
   std::filesystem::path file_;
   AuthoredParameters parameters_;
   std::string hash_;
-  std::multimap<std::uint32_t, std::size_t> changes_;  ///< who comes or goes in which frame
+  std::multimap<std::uint32_t, std::size_t> changes_;  ///< bodies that appear or vanish, by frame
 };
 
-/// Moves a source from its initial pose to frame `index`.
+/// Advances a source from its initial pose to frame `index`.
 Frame advance(FrameSource& source, Frame initial, std::uint32_t index) {
   if (auto* frames = dynamic_cast<IndexedFrames*>(&source)) return frames->at(index);
   Frame frame = initial;
@@ -138,13 +138,13 @@ Frame advance(FrameSource& source, Frame initial, std::uint32_t index) {
   return frame;
 }
 
-/// The unturned boxes of a source that has just been rewound; empty when only boxes are known.
+/// The unrotated boxes of a source that was just rewound; empty when only boxes are known.
 std::vector<Aabb> unturnedBoxes(PoseSource* source) {
   if (source == nullptr) return {};
   try {
     const auto boxes = source->unturnedBoxes();
     return {boxes.begin(), boxes.end()};
-  } catch (const InputError&) {  // the replay of a recording of boxes
+  } catch (const InputError&) {  // replay of a recording of boxes
     return {};
   }
 }
@@ -157,7 +157,7 @@ AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
   for (int axis = 0; axis < 3; ++axis) {
     const float edge = box.max[axis] - box.min[axis];
     body.pose.position[axis] = box.min[axis] + edge / 2;
-    half[axis] = std::max(edge, kMinEdge) / 2;  // a body has some thickness
+    half[axis] = std::max(edge, kMinEdge) / 2;  // bodies must have a positive thickness
   }
   if (object_type == "Spheres") {
     body.shape = SphereShape{half[0]};
@@ -182,7 +182,7 @@ AuthoredParameters::AuthoredParameters(const ParameterValues& stated)
 
 AuthoredParameters::AuthoredParameters(const ParameterValues& other, const Vec3& gravity)
     : AuthoredParameters() {
-  // One by one: the chosen engine decides which parameters follow.
+  // One at a time: the chosen engine determines the later parameters.
   visitParameters([&](const Parameter& parameter) {
     const auto value = other.find(std::string(parameter.name));
     if (value != other.end()) setParameter(parameter, value->second);
@@ -234,7 +234,7 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
   const Frame wanted = advance(source, initial, frame);
   if (auto* whole = dynamic_cast<SceneSource*>(&source)) return whole->authoredScene();
 
-  // Gravity is not known: the bodies stay where they are.
+  // Gravity is unknown: the bodies stay where they are.
   AuthoredScene scene{
       .name = info.name, .world = info.world, .parameters = {{"gravity_y", "0"}}, .bodies = {}};
   takeCollisions(scene, info.filter);

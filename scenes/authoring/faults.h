@@ -1,4 +1,4 @@
-// What the sources of authored scenes share: refusing what is wrong.
+// Validation shared by the sources of authored scenes.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace broadmark::scenes {
 
-/// Throws InputError when the body with this id is wrong.
+/// Throws InputError if the body with this id is invalid.
 void requireValid(const AuthoredBody&, std::size_t id);
-/// Throws InputError when any part of the scene but its parameters is wrong.
+/// Throws InputError if the scene, except for its parameters, is invalid.
 void requireValid(const AuthoredScene&);
 
-/// What is wrong with a number that is no layer, and what would be right.
+/// The message for an invalid layer number.
 std::string faultOfLayer(std::string_view key);
 
-/// The scene's layers collide as the filter says. Throws InputError when the filter knows worlds or
-/// tags, which an authored scene cannot state.
+/// Sets the scene's colliding layers from the filter. Throws InputError if the filter has worlds or
+/// tags, which authored scenes do not support.
 void takeCollisions(AuthoredScene& scene, const CollisionFilter& filter);
 
 }  // namespace broadmark::scenes

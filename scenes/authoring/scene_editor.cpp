@@ -1,5 +1,5 @@
-// Undo and redo are the same operation: a step exchanges what it holds with what the scene has. So
-// nothing is computed backwards, and the former values come back bit for bit.
+// Undo and redo are the same operation: a step swaps its contents with the scene's. No inverse is
+// computed, so the former values are restored bit for bit.
 
 #include "broadmark/scenes/scene_editor.h"
 
@@ -33,7 +33,7 @@ std::shared_ptr<const BodyIds> shared(BodyIds ids) {
   return std::make_shared<const BodyIds>(std::move(ids));
 }
 
-/// Removes bodies from all of them, and returns them in the order of their ids.
+/// Removes these bodies, and returns them in the order of their ids.
 std::vector<AuthoredBody> taken(std::vector<AuthoredBody>& all, const BodyIds& ids) {
   std::vector<AuthoredBody> bodies;
   bodies.reserve(ids.size());
@@ -49,10 +49,10 @@ std::vector<AuthoredBody> taken(std::vector<AuthoredBody>& all, const BodyIds& i
   return bodies;
 }
 
-/// Inserts bodies so that these become their ids.
+/// Inserts bodies so that they get these ids.
 void insert(std::vector<AuthoredBody>& all, const BodyIds& ids,
             const std::vector<AuthoredBody>& bodies) {
-  // From the last id down, so that each body moves once.
+  // In descending order, so that each body moves once.
   std::size_t left = all.size();
   all.resize(all.size() + bodies.size());
   for (std::size_t i = all.size(), coming = bodies.size(); coming > 0;) {
@@ -61,13 +61,13 @@ void insert(std::vector<AuthoredBody>& all, const BodyIds& ids,
   }
 }
 
-/// Numbers of groups that no body has.
+/// Unused group numbers.
 class FreeGroups {
  public:
   explicit FreeGroups(const std::vector<AuthoredBody>& bodies) {
     for (const AuthoredBody& body : bodies) taken_.insert(body.group);
   }
-  /// The least one, each time another.
+  /// Returns the next unused number, ascending.
   std::uint32_t next() {
     while (taken_.contains(last_)) ++last_;
     return last_++;
@@ -98,7 +98,7 @@ void SceneEditor::select(BodyIds bodies) {
     throw InputError(
         fmt::format("there is no body {}: the scene has {}", bodies.back(), scene_.bodies.size()));
   }
-  // An equal list stays the same object, so that steps share it.
+  // Equal lists share one object, also between steps.
   if (bodies != *selection_) selection_ = shared(std::move(bodies));
 }
 
@@ -239,7 +239,7 @@ void SceneEditor::setParameters(const ParameterValues& values) {
     std::erase_if(wanted, [&](const auto& value) { return !known.contains(value.first); });
   }
   for (const auto& [name, value] : values) wanted[name] = value;
-  // Equal values become equal texts.
+  // Normalises the values' text.
   const ParameterValues all = AuthoredParameters(wanted).values();
   for (auto& [name, value] : wanted) value = all.at(name);
   changeScene("change parameters", &AuthoredScene::parameters, std::move(wanted), {});
@@ -296,7 +296,7 @@ void SceneEditor::changeScene(std::string name, Value AuthoredScene::*property, 
                               const std::string& fault) {
   if (!fault.empty()) throw InputError(fault);
   if (value == scene_.*property) return;
-  constexpr std::size_t kUsualText = 4096;  // names and parameters hold no bodies
+  constexpr std::size_t kUsualText = 4096;  // names and parameters contain no bodies
   perform({.name = std::move(name),
            .exchange = [property,
                         value](AuthoredScene& scene) mutable { std::swap(scene.*property, value); },

@@ -1,4 +1,4 @@
-// Computed in double precision, so that moving alone adds floats exactly.
+// In double precision, so that pure translations add floats exactly.
 
 #include "broadmark/scenes/transformation.h"
 
@@ -17,7 +17,7 @@ Vec3 narrow(const Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// How much longer an edge in this direction becomes.
+/// The factor by which an edge in this direction grows.
 double factorAlong(const Vector3d& direction, const Transformation& change) {
   const Vector3d along = wide(change.axes).conjugate() * direction;
   return along.cwiseProduct(wide(change.scale)).norm() / along.norm();

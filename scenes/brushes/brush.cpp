@@ -1,4 +1,4 @@
-// Painting: the bodies that a brush places, where there is room.
+// Painting: brushes place bodies in unoccupied space.
 
 #include "broadmark/scenes/brush.h"
 
@@ -16,12 +16,12 @@
 namespace broadmark::scenes {
 namespace {
 
-/// Share of its size by which a box may reach into another: bodies that touch, after rounding.
+/// Tolerated overlap as a fraction of a box's size: touching bodies may overlap by rounding.
 constexpr float kTouch = 1e-4F;
-/// Places that a brush that scatters tries for each body.
+/// Positions tried per body by scattering brushes.
 constexpr int kTries = 100;
 
-/// The box without a skin of that thickness.
+/// The box shrunk by the tolerance.
 Aabb core(Aabb box) {
   for (int axis = 0; axis < 3; ++axis) {
     const float skin = kTouch * (box.max[axis] - box.min[axis]);
@@ -31,7 +31,7 @@ Aabb core(Aabb box) {
   return box;
 }
 
-/// The exponent of the least power of two above all edges.
+/// The exponent of the smallest power of two above all edges.
 int exponentOf(const Aabb& box) {
   int exponent = 0;
   std::frexp(longestEdge(box), &exponent);

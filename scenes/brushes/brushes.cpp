@@ -1,4 +1,4 @@
-// The brushes: how many bodies each of them places, and where.
+// The brushes: the number of bodies they place, and the positions.
 
 #include <array>
 
@@ -15,7 +15,7 @@ class SingleBrush final : public Brush {
   [[nodiscard]] Vec3 place(std::size_t, Random&) const override { return {}; }
 };
 
-/// A brush whose number of bodies is a parameter.
+/// A brush with the number of bodies as a parameter.
 template <std::int64_t default_count>
 class CountedBrush : public Brush {
  public:
@@ -43,7 +43,7 @@ class BallBrush final : public CountedBrush<100> {
   double radius_ = 5;
 };
 
-using Size = std::array<double, 3>;  ///< of a box around the point that is painted at
+using Size = std::array<double, 3>;  ///< of a box around the painted point
 constexpr Size kUsualSize = {10, 10, 10};
 
 void visitSize(Size& size, const ParameterVisitor& visit) {
@@ -52,7 +52,7 @@ void visitSize(Size& size, const ParameterVisitor& visit) {
   visit({"size_z", "size of the box along z, in world units", &size[2], 1e-3, 1e6});
 }
 
-/// A uniformly random one.
+/// A uniformly random point.
 Vec3 pointInside(const Size& size, Random& random) {
   Vec3 point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -76,7 +76,7 @@ class BoxBrush final : public CountedBrush<100> {
   Size size_ = kUsualSize;
 };
 
-/// As many bodies, at random in a box, as give it a density.
+/// Random bodies in a box, as many as its density requires.
 class RandomBrush final : public Brush {
  public:
   void visitParameters(const ParameterVisitor& visit) override {

@@ -1,7 +1,7 @@
-// Boids: birds of a flock instead of bodies under forces. Each boid keeps a distance from its
-// neighbours, takes on their direction and stays near them, at about its launch speed. Bodies do
-// not collide; they avoid walls and never pass them. O(n) per step: neighbours are found in a
-// uniform grid, and a boid follows at most kMaxNeighbours.
+// Boids: birds of a flock instead of bodies under forces. Boids keep a distance from neighbours,
+// align with them and stay near them, at about their launch speeds. Bodies do not collide; they
+// avoid walls and never pass them. O(n) per step: neighbours are found in a uniform grid, and a
+// boid follows at most kMaxNeighbours.
 //
 // C. Reynolds: Flocks, Herds, and Schools: A Distributed Behavioral Model. SIGGRAPH 1987.
 // M. Teschner et al.: Optimized Spatial Hashing for Collision Detection of Deformable Objects.
@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Enough in a crowd: birds follow far fewer.
+/// Sufficient in dense flocks: birds follow far fewer.
 constexpr int kMaxNeighbours = 64;
 
 Vector3f toEigen(const Vec3& v) { return Vector3f(v.data()); }
@@ -72,9 +72,9 @@ class Boid : public PhysicsBody {
 
   [[nodiscard]] Vector3f position() const { return toEigen(pose_.position); }
   [[nodiscard]] const Vector3f& velocity() const { return velocity_; }
-  /// The mean edge of its box while it is unturned.
+  /// The mean edge of its unrotated box.
   [[nodiscard]] double size() const { return size_; }
-  /// The launch speed, which it tends to keep.
+  /// The launch speed, to which it tends.
   [[nodiscard]] float cruisingSpeed() const { return cruising_speed_; }
 
   /// Flies with this velocity and turns into its direction.
@@ -83,8 +83,8 @@ class Boid : public PhysicsBody {
     pose_.position = fromEigen(position() + seconds * velocity);
     if (!velocity.isZero(0)) pose_.rotation = headingAlong(velocity);
   }
-  /// Moves without flying.
-  void push(const Vector3f& way) { pose_.position = fromEigen(position() + way); }
+  /// Moves without changing the velocity.
+  void push(const Vector3f& displacement) { pose_.position = fromEigen(position() + displacement); }
   /// Removes the part of the velocity against `normal`.
   void slideAlong(const Vector3f& normal) {
     velocity_ -= std::min(0.0F, velocity_.dot(normal)) * normal;
@@ -104,7 +104,7 @@ class Boid : public PhysicsBody {
   bool frozen_ = false;
 };
 
-/// Points by their cell in a uniform grid without bounds: cells share as many buckets as there are
+/// Hashes points by their cell in an unbounded uniform grid, into at least as many buckets as
 /// points.
 class CellTable {
  public:
@@ -145,11 +145,11 @@ class CellTable {
   using Cell = std::array<int, 3>;
 
   [[nodiscard]] Cell cellOf(const Vector3f& point) const {
-    constexpr float kFarthest = 1e9F;  // fits into an int
+    constexpr float kMaxCell = 1e9F;  // fits into an int
     Cell cell;
     for (int axis = 0; axis < 3; ++axis) {
       const float index = std::floor(point[axis] / cell_edge_);
-      cell[axis] = static_cast<int>(std::clamp(index, -kFarthest, kFarthest));
+      cell[axis] = static_cast<int>(std::clamp(index, -kMaxCell, kMaxCell));
     }
     return cell;
   }
@@ -166,9 +166,9 @@ class CellTable {
   float cell_edge_ = 1;
   std::uint32_t bucket_mask_ = 0;
   std::vector<Cell> cells_;            ///< by point
-  std::vector<std::uint32_t> starts_;  ///< where each bucket's part of points_ starts, and the end
-  std::vector<std::uint32_t> next_;    ///< where the next point of each bucket goes
-  std::vector<std::uint32_t> points_;  ///< indices, bucket after bucket
+  std::vector<std::uint32_t> starts_;  ///< start of each bucket in points_, and the end
+  std::vector<std::uint32_t> next_;    ///< insertion index of each bucket
+  std::vector<std::uint32_t> points_;  ///< indices, sorted by bucket
 };
 
 class BoidsEngine final : public PhysicsEngine {
@@ -216,7 +216,7 @@ class BoidsEngine final : public PhysicsEngine {
   }
 
  private:
-  /// Decides all new velocities before any boid moves.
+  /// Computes all new velocities before any boid moves.
   void steer(float seconds) {
     if (boids_.empty()) return;
     positions_.clear();
@@ -244,17 +244,17 @@ class BoidsEngine final : public PhysicsEngine {
     const Boid& boid = *boids_[self];
     Vector3f away = Vector3f::Zero();
     Vector3f velocities = Vector3f::Zero();
-    Vector3f ways = Vector3f::Zero();
+    Vector3f offsets = Vector3f::Zero();
     int seen = 0;
     int leaders = 0;
     cells_.eachNear(positions_[self], [&](std::uint32_t other) {
-      const Vector3f way = positions_[other] - positions_[self];
-      const float distance = way.norm();
+      const Vector3f offset = positions_[other] - positions_[self];
+      const float distance = offset.norm();
       if (other == self || distance > sight) return true;
-      if (distance < elbow_room && distance > 0) away -= way * (1 / distance - 1 / elbow_room);
+      if (distance < elbow_room && distance > 0) away -= offset * (1 / distance - 1 / elbow_room);
       if (!boids_[other]->asleep()) {
         velocities += boids_[other]->velocity();
-        ways += way;
+        offsets += offset;
         ++leaders;
       }
       return ++seen < kMaxNeighbours;
@@ -264,12 +264,12 @@ class BoidsEngine final : public PhysicsEngine {
       const auto count = static_cast<float>(leaders);
       steering += static_cast<float>(alignment_) * (velocities / count - boid.velocity()) /
                   boid.cruisingSpeed();
-      steering += static_cast<float>(cohesion_) * ways / (count * sight);
+      steering += static_cast<float>(cohesion_) * offsets / (count * sight);
     }
     return steering;
   }
 
-  /// Turns harder the nearer a wall is: an acceleration per cruising speed.
+  /// Steers more strongly the nearer a wall is: an acceleration per cruising speed.
   [[nodiscard]] Vector3f offTheWalls(const Boid& boid) const {
     const auto foresight = static_cast<float>(foresight_);
     const float heeded = foresight * boid.cruisingSpeed();
@@ -278,7 +278,7 @@ class BoidsEngine final : public PhysicsEngine {
     for (const HalfSpace& wall : walls_) {
       const Vector3f normal = toEigen(wall.normal);
       const float gap = depthInside(boid, wall) - normal.cwiseAbs().dot(half);
-      // Three times what would stop a boid that flies straight at the wall.
+      // Three times the deceleration that would stop a boid flying straight at the wall.
       if (gap < heeded) steering += 3 / foresight * (1 - std::max(gap, 0.0F) / heeded) * normal;
     }
     return steering;
@@ -300,7 +300,7 @@ class BoidsEngine final : public PhysicsEngine {
     }
   }
 
-  /// Keeps the whole boid inside the walls; of one that is larger than the world, its centre.
+  /// Keeps the whole boid inside the walls; if it is larger than the world, its centre.
   void keepInside(Boid& boid) const {
     const Vector3f half = halfExtents(boid.shape(), boid.pose());
     for (const float share : {1.0F, 0.0F}) {
@@ -330,12 +330,12 @@ class BoidsEngine final : public PhysicsEngine {
   double max_speed_ = 1.4;
 
   BodyPool<Boid> bodies_;
-  std::vector<Boid*> boids_;  ///< all bodies, while the engine steps
+  std::vector<Boid*> boids_;  ///< all bodies, during a step
   std::vector<HalfSpace> walls_;
   Vector3f gravity_ = Vector3f::Zero();
   CellTable cells_;
-  std::vector<Vector3f> positions_;   ///< by boid, before any has moved
-  std::vector<Vector3f> velocities_;  ///< by boid, as decided by steer()
+  std::vector<Vector3f> positions_;   ///< by boid, before the step
+  std::vector<Vector3f> velocities_;  ///< by boid, from steer()
 };
 
 }  // namespace

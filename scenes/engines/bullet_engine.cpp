@@ -1,8 +1,8 @@
 // Rigid bodies by Bullet (single precision): dynamic AABB trees, sequential impulses.
 //
-// Bullet has settings of the whole process, which this engine never changes, so that several worlds
-// can exist at the same time. One of them, the margin of its trees, is changed by algorithms of the
-// DBVT family. Bullet reads it whenever a body's box changes, so such calls hold a SharedUse.
+// This engine never changes Bullet's process-wide settings, so several worlds can coexist. One of
+// them, the margin of its trees, is changed by algorithms of the DBVT family. Bullet reads it
+// whenever a body's box changes, so such calls hold a SharedUse.
 
 #include <btBulletDynamicsCommon.h>
 
@@ -35,8 +35,8 @@ Pose fromBullet(const btTransform& transform) {
   return {fromBullet(transform.getOrigin()), {q.x(), q.y(), q.z(), q.w()}};
 }
 
-/// A half-space whose box ends at the plane if the plane lies across an axis. Bullet's own plane
-/// has an infinite box, which makes a pair with every body of the world.
+/// A half-space. Its box ends at the plane if the plane is perpendicular to an axis. Bullet's own
+/// plane has an infinite box, which overlaps every body of the world.
 class HalfSpaceShape final : public btStaticPlaneShape {
  public:
   using btStaticPlaneShape::btStaticPlaneShape;
@@ -50,8 +50,8 @@ class HalfSpaceShape final : public btStaticPlaneShape {
   }
 };
 
-/// The points of a shape that can touch a wall first, in the shape's own coordinates: the corners
-/// of a box, the deepest point of a sphere.
+/// The points of a shape that can touch a wall first, in local coordinates: the corners of a box,
+/// the deepest point of a sphere.
 int wallPoints(const btBoxShape& box) { return box.getNumVertices(); }
 btVector3 wallPoint(const btBoxShape& box, int corner, const btVector3& /*into_wall*/) {
   btVector3 at;
@@ -63,9 +63,9 @@ btVector3 wallPoint(const btSphereShape& sphere, int, const btVector3& into_wall
   return sphere.getRadius() * into_wall;
 }
 
-/// Contacts of a body with a wall: one for each point that the next step could move into the wall.
-/// So the solver stops even a fast body at the wall. (Bullet's own algorithm finds only the nearest
-/// point, and only once it touches.)
+/// Contacts of a body with a wall: one for each point that may reach the wall in the next step. So
+/// the solver stops even fast bodies. (Bullet's own algorithm finds only the nearest point, and
+/// only after it touches.)
 template <class BodyShape>
 class WallContact final : public btCollisionAlgorithm {
  public:
@@ -121,7 +121,7 @@ class WallContact final : public btCollisionAlgorithm {
     manifolds.push_back(manifold_);
   }
 
-  /// Makes one for Bullet.
+  /// Factory for Bullet.
   struct CreateFunc final : btCollisionAlgorithmCreateFunc {
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
@@ -139,7 +139,7 @@ class WallContact final : public btCollisionAlgorithm {
     return std::max(btScalar(0), -body.getLinearVelocity().dot(normal)) + spin;
   }
 
-  /// The solver starts from the impulses that the same point had in the last step.
+  /// Warm starts the solver with the impulses of the same point in the last step.
   static void warmStart(btManifoldPoint& point, const btPersistentManifold& before) {
     for (int i = 0; i < before.getNumContacts(); ++i) {
       const btManifoldPoint& old = before.getContactPoint(i);
@@ -154,21 +154,21 @@ class WallContact final : public btCollisionAlgorithm {
   btScalar resting_threshold_;
 };
 
-/// A supported body that has been still for this long, in seconds, is held where it is.
+/// Supported bodies are held after this time of stillness, in seconds.
 constexpr btScalar kHoldAfter = 0.5F;
-/// A body is still while it stays nearer to one place than this share of a free fall of that time.
+/// Radius for stillness, as a fraction of a free fall of that time.
 constexpr btScalar kStillShare = 0.25F;
-/// A body is supported when contacts carry at least this share of its weight. Those of a large pile
-/// carry it now more, now less.
+/// A body is supported if contacts carry at least this fraction of its weight. The fraction varies
+/// in large piles.
 constexpr btScalar kCarriedShare = 0.25F;
-/// A body is not held when its velocities would take it away from its place in this time, in
-/// seconds: among bodies that are still, too, whose trembling would do that in a longer one.
+/// A body is not held if its velocities would move it out of its radius within this time, in
+/// seconds. Short, since the velocities of still bodies fluctuate.
 constexpr btScalar kLeavesWithin = 0.1F;
-/// The same beside bodies that are not still: what they push must be free to go.
+/// The same beside moving bodies: what they push must stay free.
 constexpr btScalar kPushedWithin = kHoldAfter;
 
-/// For how long a body has been still: all of it near to one place. Its velocity tells less: few
-/// iterations leave each body of a large pile trembling, and sinking slowly into those below.
+/// The duration of a body's stillness: its positions stay within a radius. Velocities are a poor
+/// criterion: with few iterations bodies of a large pile jitter, and sink slowly into those below.
 class SleepTracker {
  public:
   void update(const btRigidBody& body, btScalar time_step) {
@@ -181,14 +181,14 @@ class SleepTracker {
     lasted_ = 0;
   }
 
-  /// The body was moved or launched from outside.
+  /// Call when the body was moved or launched from outside.
   void end() { lasted_ = 0; }
 
   [[nodiscard]] bool lasts() const { return lasted_ >= kHoldAfter; }
-  /// Where the body was in the last update.
+  /// The pose in the last update.
   [[nodiscard]] const btTransform& pose() const { return pose_; }
 
-  /// Whether its velocities would take a still body away from its place in this time.
+  /// Whether a still body's velocities would move it out of its radius within this time.
   static bool endsWithin(btScalar time, const btRigidBody& body) {
     btScalar speed = body.getLinearVelocity().length();
     const btVector3 extents = halfExtents(body);
@@ -200,9 +200,9 @@ class SleepTracker {
   }
 
  private:
-  /// How far a still body may be from its place.
+  /// The radius for stillness.
   static btScalar reachOf(const btRigidBody& body) {
-    // What is too slow to count as motion is no motion either.
+    // Includes motion below the sleeping threshold.
     const btScalar slow = body.getLinearSleepingThreshold() * kHoldAfter;
     const btScalar fall = body.getGravity().length() * kHoldAfter * kHoldAfter / 2;
     return std::max(slow, kStillShare * fall);
@@ -215,7 +215,7 @@ class SleepTracker {
     return (max - min) / 2;
   }
 
-  /// An upper bound of how far any point of the body is between two poses.
+  /// An upper bound of the distance between any point of the body in the two poses.
   static btScalar distance(const btRigidBody& body, const btTransform& a, const btTransform& b) {
     btScalar sum = a.getOrigin().distance(b.getOrigin());
     const btVector3 extents = halfExtents(body);
@@ -230,16 +230,15 @@ class SleepTracker {
   btScalar lasted_ = 0;
 };
 
-/// What the world knows of a body beyond what Bullet does. Each body's user pointer leads to its
-/// own.
+/// State of a body beyond Bullet's, referenced by the body's user pointer.
 struct BodyState {
   std::uint8_t layer = 0;
   SleepTracker stillness;
   bool held = false;       ///< in the last step: still and supported
-  bool disturbed = false;  ///< in this step: touches a body that is not still
+  bool disturbed = false;  ///< in this step: touches a moving body
 };
 
-/// Lets only those bodies meet whose layers collide. All meet the walls.
+/// Collides only bodies of colliding layers. All bodies collide with the walls.
 class LayerFilter final : public btOverlapFilterCallback {
  public:
   explicit LayerFilter(const LayerMatrix& layers) : layers_(layers) {}
@@ -261,11 +260,11 @@ class LayerFilter final : public btOverlapFilterCallback {
   LayerMatrix layers_;
 };
 
-/// Bullet's world with a limit on angular speeds, and with piles that come to rest. Without help
-/// they do not: few iterations leave some motion in each body of a large pile, and in Bullet a pile
-/// sleeps only when all of its bodies are slow. Here a body that is still and supported is held
-/// where it is. While only such bodies touch it, it is fixed, too: the solver takes it for a wall.
-/// So a pile becomes solid bit by bit, and few iterations are enough for the rest of it.
+/// Bullet's world with a limit on angular speeds, and with piles that come to rest. By default they
+/// do not: few iterations leave some motion in each body of a large pile, and a pile sleeps in
+/// Bullet only when all of its bodies are slow. Here a still and supported body is held in its
+/// pose. If only such bodies touch it, it is fixed, too: the solver treats it as a wall. So a pile
+/// solidifies gradually, and few iterations suffice for the rest of it.
 class World final : public btDiscreteDynamicsWorld {
  public:
   World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
@@ -273,13 +272,13 @@ class World final : public btDiscreteDynamicsWorld {
       : btDiscreteDynamicsWorld(dispatcher, broad_phase, solver, configuration),
         max_angular_speed_(max_angular_speed) {}
 
-  /// Support may have gone: the next step fixes no body.
+  /// Support may have changed: the next step fixes no body.
   void releaseAll() { release_all_ = true; }
 
-  /// Wakes the bodies that touch this one, and all that are connected with these, and holds them no
-  /// longer: they may have leant on it.
+  /// Wakes the bodies that touch this one, and all connected with these, and releases them: they
+  /// may have been supported by it.
   void releaseThoseAt(const btRigidBody& body) {
-    std::set<int> islands;  // Bullet's numbers of bodies that are connected, of the last step
+    std::set<int> islands;  // Bullet's ids of connected components, from the last step
     const auto add = [&](const btCollisionObject& other) {
       if (!other.isStaticObject()) islands.insert(other.getIslandTag());
     };
@@ -323,7 +322,7 @@ class World final : public btDiscreteDynamicsWorld {
     });
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
     forEachBody([&](btRigidBody& body) {
-      // To the last bit: the solver pushes bodies apart, and integration rounds.
+      // Exactly: the solver pushes bodies apart, and integration rounds.
       if (stateOf(body).held) body.setCenterOfMassTransform(stateOf(body).stillness.pose());
       if (body.isActive()) stateOf(body).stillness.update(body, time_step);
     });
@@ -366,7 +365,7 @@ class World final : public btDiscreteDynamicsWorld {
     }
   }
 
-  /// Whether the body has been still for long, and is supported.
+  /// Whether the body has been still long enough, and is supported.
   [[nodiscard]] static bool mayBeHeld(const btRigidBody& body, btScalar time_step) {
     const BodyState& state = stateOf(body);
     if (!body.isActive() || !state.stillness.lasts()) return false;
@@ -431,14 +430,14 @@ class BulletBody : public PhysicsBody {
     body_.forceActivationState(ISLAND_SLEEPING);
   }
 
-  /// Leaves the world, and wakes the bodies that it touches.
+  /// Removes itself from the world, and wakes the bodies that it touches.
   void leave() {
     world_.releaseThoseAt(body_);
     world_.removeRigidBody(&body_);
   }
-  /// Whether it has recently moved too fast to fall asleep.
+  /// Whether it was recently too fast to fall asleep.
   [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
-  /// Does nothing to a frozen body.
+  /// No effect on a frozen body.
   void wake() {
     state_.stillness.end();
     world_.releaseAll();
@@ -452,9 +451,9 @@ class BulletBody : public PhysicsBody {
   btRigidBody body_;
 };
 
-/// Bullet sets aside room for thousands of contacts at once: too much where there are thousands of
-/// worlds. Beyond this room it takes memory as it needs it.
-btDefaultCollisionConstructionInfo littleRoom() {
+/// By default Bullet preallocates thousands of contacts: too much for thousands of worlds. Beyond
+/// the preallocation it allocates on demand.
+btDefaultCollisionConstructionInfo smallPools() {
   btDefaultCollisionConstructionInfo info;
   info.m_defaultMaxPersistentManifoldPoolSize = 64;
   info.m_defaultMaxCollisionAlgorithmPoolSize = 64;
@@ -472,18 +471,18 @@ class BulletEngine final : public PhysicsEngine {
     solver.m_numIterations = static_cast<int>(settings.solver_iterations);
     // With friction in one direction only, Bullet's default, piles creep sideways.
     solver.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-    // Find all pairs in one pass over the tree, and improve the tree a little in each step: with
-    // many moving bodies faster than one query for each (docs/generator.md).
+    // Find all pairs in one pass over the tree, and optimise the tree incrementally: with many
+    // moving bodies faster than one query per body (docs/generator.md).
     broad_phase_.m_deferedcollide = true;
     broad_phase_.m_dupdates = 1;
-    // Leave the boxes of sleeping bodies alone; setPose() updates them.
+    // Skip the boxes of sleeping bodies; setPose() updates them.
     world_.setForceUpdateAllAabbs(false);
     useAgainstWalls(BOX_SHAPE_PROXYTYPE, box_wall_contact_);
     useAgainstWalls(SPHERE_SHAPE_PROXYTYPE, sphere_wall_contact_);
   }
 
   ~BulletEngine() override {
-    // Bullet would go through all pairs once for each body: remove the pairs first.
+    // Bullet would traverse all pairs for each body: remove the pairs first.
     btOverlappingPairCache& pairs = *broad_phase_.getOverlappingPairCache();
     while (pairs.getNumOverlappingPairs() > 0) {
       const btBroadphasePair& last =
@@ -535,7 +534,7 @@ class BulletEngine final : public PhysicsEngine {
 
   void setGravity(const Vec3& gravity) override {
     if (toBullet(gravity) == world_.getGravity()) return;
-    // Bullet changes only bodies that are awake.
+    // Bullet moves only bodies that are awake.
     bodies_.each([](BulletBody& body) { body.wake(); });
     world_.setGravity(toBullet(gravity));
   }
@@ -544,7 +543,7 @@ class BulletEngine final : public PhysicsEngine {
 
   void step() override {
     const double substep = settings_.time_step / static_cast<double>(settings_.substeps);
-    // One by one: how Bullet itself divides a step depends on rounding.
+    // Separate calls: Bullet's own division of a step depends on rounding.
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
       const SharedUse margin(kBulletTreeMargin);
       world_.stepSimulation(static_cast<btScalar>(substep), 0);
@@ -552,8 +551,8 @@ class BulletEngine final : public PhysicsEngine {
   }
 
   [[nodiscard]] bool allAsleep() const override {
-    // When all bodies are ready to sleep, Bullet lets them sleep in the next step, except those
-    // that touch nothing.
+    // When all bodies are ready to sleep, Bullet lets them sleep in the next step, except isolated
+    // bodies.
     return bodies_.all([](const BulletBody& body) { return !body.restless(); });
   }
 
@@ -571,8 +570,8 @@ class BulletEngine final : public PhysicsEngine {
     return sphere_shapes_.try_emplace(sphere.radius, sphere.radius).first->second;
   }
 
-  /// Bullet compares speeds, not energies: here the speeds of a body that has the threshold's
-  /// energy in its linear or its angular motion alone.
+  /// Bullet compares speeds, not energies: sets the speeds at which the linear or angular motion
+  /// alone has the threshold's energy.
   void setSleepingThresholds(btRigidBody::btRigidBodyConstructionInfo& info) const {
     const auto speed = static_cast<btScalar>(std::sqrt(2 * settings_.sleep_threshold));
     const btVector3& inertia = info.m_localInertia;
@@ -586,7 +585,7 @@ class BulletEngine final : public PhysicsEngine {
   btScalar material_restitution_ = 0;
   WallContact<btBoxShape>::CreateFunc box_wall_contact_;
   WallContact<btSphereShape>::CreateFunc sphere_wall_contact_;
-  btDefaultCollisionConfiguration configuration_{littleRoom()};
+  btDefaultCollisionConfiguration configuration_{smallPools()};
   btCollisionDispatcher dispatcher_{&configuration_};
   std::optional<LayerFilter> layer_filter_;
   btDbvtBroadphase broad_phase_;
@@ -596,7 +595,7 @@ class BulletEngine final : public PhysicsEngine {
   std::deque<HalfSpaceShape> wall_shapes_;
   std::deque<btCollisionObject> walls_;
   BodyPool<BulletBody> bodies_;
-  // Last member, destroyed first: its destructor still uses everything in the world.
+  // Last member, destroyed first: its destructor uses the other members.
   World world_{&dispatcher_, &broad_phase_, &solver_, &configuration_,
                static_cast<btScalar>(settings_.max_angular_speed)};
 };

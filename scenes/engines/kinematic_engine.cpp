@@ -12,8 +12,8 @@
 namespace broadmark::scenes::kinematic_engine {
 namespace {
 
-/// Time for which a body must be slow before it falls asleep, in seconds. A body at the top of its
-/// path is slow for a shorter time.
+/// Time of slow motion before a body falls asleep, in seconds. A body at the apex of its path is
+/// slow for a shorter time.
 constexpr double kTimeToSleep = 1;
 
 float dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -26,7 +26,7 @@ Vec3 plus(const Vec3& a, float factor, const Vec3& b) {
 Vec3 times(const Vec3& v, float factor) { return plus({}, factor, v); }
 
 /// The rotation after turning at this angular velocity for a short time: to first order, then
-/// normalised. Library functions might round differently elsewhere.
+/// normalised. Library functions might round differently on other machines.
 std::array<float, 4> turned(const std::array<float, 4>& q, const Vec3& w, float time) {
   const float h = time / 2;
   std::array<float, 4> to = {q[0] + h * (w[0] * q[3] + w[1] * q[2] - w[2] * q[1]),
@@ -38,12 +38,12 @@ std::array<float, 4> turned(const std::array<float, 4>& q, const Vec3& w, float 
   return to;
 }
 
-/// The same for all bodies.
+/// Shared by all bodies.
 struct World {
   std::vector<HalfSpace> walls;
   Vec3 gravity{};
   float time = 0;           ///< of a substep
-  float linear_factor = 1;  ///< share of a velocity left by damping after a substep
+  float linear_factor = 1;  ///< fraction of a velocity left by damping after a substep
   float angular_factor = 1;
   float friction = 0;
   float restitution = 0;
@@ -88,7 +88,7 @@ class KinematicBody : public PhysicsBody {
     fallAsleep();
   }
 
-  /// Does nothing to a frozen body.
+  /// No effect on a frozen body.
   void wake() {
     asleep_ = frozen_;
     slow_substeps_ = 0;
@@ -119,8 +119,8 @@ class KinematicBody : public PhysicsBody {
     measure();
   }
 
-  /// Moves the tight box out of the wall and changes the velocity as the impact does: the part
-  /// along the normal is reflected by the restitution, the sideways part slowed by friction.
+  /// Moves the tight box out of the wall and applies the impact: restitution reflects the normal
+  /// velocity, friction slows the tangential velocity.
   void bounce(const HalfSpace& wall, const World& world) {
     const Vec3& normal = wall.normal;
     const float reach = std::abs(normal[0]) * half_size_[0] + std::abs(normal[1]) * half_size_[1] +
@@ -130,7 +130,7 @@ class KinematicBody : public PhysicsBody {
     pose_.position = plus(pose_.position, depth, normal);
     const float approach = -dot(normal, linear_);
     if (approach <= 0) return;
-    // Without the speed gained from gravity behind the wall: otherwise every impact would add
+    // Subtracts the speed gained from gravity behind the wall: otherwise every impact would add
     // energy.
     const float gained = -2 * dot(normal, world.gravity) * depth;
     const float impact = std::sqrt(std::max(0.0F, approach * approach - gained));
@@ -141,7 +141,7 @@ class KinematicBody : public PhysicsBody {
     linear_ = plus(times(sideways, kept), world.restitution * impact, normal);
   }
 
-  /// Falls asleep after a time of little energy.
+  /// Falls asleep after a time of low energy.
   void rest(const World& world) {
     const float energy =
         dot(linear_, linear_) / 2 + dot(angular_, angular_) * dot(half_size_, half_size_) / 6;

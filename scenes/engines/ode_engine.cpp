@@ -1,9 +1,8 @@
 // Rigid bodies by the Open Dynamics Engine (double precision): hashed grid, box and sphere
 // colliders, projected Gauss-Seidel over the contacts of each island ("quick step").
 //
-// The quick step shuffles contacts by a random number generator of the whole process. Here each
-// world has its own state of the generator, which is put in place during a step. Only one world
-// steps at a time.
+// The quick step shuffles contacts with a process-wide random number generator. Here each world has
+// its own generator state, which is installed during a step. Only one world steps at a time.
 
 #include <ode/ode.h>
 
@@ -23,19 +22,19 @@
 namespace broadmark::scenes::ode_engine {
 namespace {
 
-/// Contacts of two bodies: enough for a face on a face.
+/// Contacts per pair: enough for a face on a face.
 constexpr int kContactsPerPair = 4;
-/// Sweeps over the contacts for each iteration in the settings. The quick step does not start from
-/// the forces of the last step, so it needs more sweeps than solvers that do.
+/// Solver sweeps per iteration in the settings. The quick step has no warm start, so it needs more
+/// sweeps than other solvers.
 constexpr int kSweepsPerIteration = 2;
-/// Depth that contacts keep at rest, so that they do not come and go.
+/// Penetration at rest, so that contacts persist.
 constexpr double kRestingDepth = 0.005;
-/// The largest speed at which overlapping bodies are pushed apart, in units per second: otherwise
-/// bodies that start inside each other would explode.
+/// The largest separation speed of overlapping bodies, in units per second: otherwise bodies that
+/// start inside each other would explode.
 constexpr double kSeparationSpeed = 2;
-/// The smallest speed of an impact that bounces, in units per second.
+/// The smallest impact speed with restitution, in units per second.
 constexpr double kBounceSpeed = 0.1;
-/// Time for which a body must be slow before it falls asleep, in seconds.
+/// Time of slow motion before a body falls asleep, in seconds.
 constexpr double kTimeToSleep = 0.5;
 
 using World = std::unique_ptr<dxWorld, Destroy<dWorldDestroy>>;
@@ -50,7 +49,7 @@ void initialiseOde() {
   static_cast<void>(initialised);
 }
 
-/// While this lives, the process's random number generator continues the sequence of one world.
+/// During its lifetime the process's random number generator continues one world's sequence.
 class ScopedOdeSeed {
  public:
   explicit ScopedOdeSeed(unsigned long& seed) : seed_(seed), lock_(mutex()) { dRandSetSeed(seed_); }
@@ -59,7 +58,7 @@ class ScopedOdeSeed {
   ScopedOdeSeed& operator=(const ScopedOdeSeed&) = delete;
 
  private:
-  /// Guards the library's generator, one for the whole process.
+  /// Guards the library's process-wide generator.
   static std::mutex& mutex() {
     static std::mutex mutex;
     return mutex;
@@ -75,7 +74,7 @@ Vec3 fromOde(const dReal* v) {
 
 class OdeBody : public PhysicsBody {
  public:
-  /// `collides_with`: the layers whose bodies it pushes.
+  /// `collides_with`: the layers of bodies that it pushes.
   OdeBody(const BodyDescription& description, dWorldID world, dSpaceID space,
           std::uint32_t collides_with)
       : shape_(description.shape), body_(dBodyCreate(world)) {
@@ -113,7 +112,7 @@ class OdeBody : public PhysicsBody {
     const Vec3& p = pose.position;
     const auto& q = pose.rotation;
     const dQuaternion quaternion = {q[3], q[0], q[1], q[2]};
-    // The geom moves its body along; that of a frozen body has none.
+    // The geom moves its body; that of a frozen body has none.
     dGeomSetPosition(geom_.get(), p[0], p[1], p[2]);
     dGeomSetQuaternion(geom_.get(), quaternion);
     frozen_pose_ = pose;
@@ -134,18 +133,18 @@ class OdeBody : public PhysicsBody {
     if (frozen_) return;
     frozen_pose_ = pose();
     frozen_ = true;
-    // A geom without a body is an immovable obstacle. It stays where it is.
+    // A geom without a body is an immovable obstacle. It keeps its pose.
     dGeomSetBody(geom_.get(), nullptr);
     stop();
   }
 
-  /// Does nothing to a frozen body.
+  /// No effect on a frozen body.
   void wake() {
     if (!frozen_) dBodyEnable(body_.get());
     slow_time_ = 0;
   }
 
-  /// Something that the body may lean on has vanished. Wakes it; until findSupport().
+  /// A possible support has vanished. Wakes the body; until findSupport().
   void loseSupport() {
     support_lost_ = !frozen_;
     wake();
@@ -153,8 +152,8 @@ class OdeBody : public PhysicsBody {
   void findSupport() { support_lost_ = false; }
   [[nodiscard]] bool supportLost() const { return support_lost_; }
 
-  /// Called after every substep: falls asleep after a time of little energy. The library itself
-  /// ignores bodies that touch nothing.
+  /// Called after every substep: falls asleep after a time of low energy. The library itself
+  /// ignores isolated bodies.
   void rest(double sleep_threshold, double time) {
     if (asleep()) return;
     const dReal* v = dBodyGetLinearVel(body_.get());
@@ -164,12 +163,12 @@ class OdeBody : public PhysicsBody {
     if (slow_time_ >= kTimeToSleep) stop();
   }
 
-  /// The body that contacts act on; null: immovable.
+  /// The body for contacts; null: immovable.
   [[nodiscard]] dBodyID dynamicBody() const { return frozen_ ? nullptr : body_.get(); }
   [[nodiscard]] dGeomID geom() const { return geom_.get(); }
 
-  /// Calls add(point, distance) for each point of the body that may reach the wall within `time`:
-  /// its position, and its distance to the wall (negative: behind it).
+  /// Calls add(point, distance) for each point of the body that may reach the wall within `time`,
+  /// with its distance to the wall (negative: behind it).
   template <class Add>
   void visitWallPoints(const HalfSpace& wall, double time, const Add& add) const {
     const dVector3 normal = {wall.normal[0], wall.normal[1], wall.normal[2]};
@@ -191,7 +190,7 @@ class OdeBody : public PhysicsBody {
   }
 
  private:
-  /// Makes the geom and what walls need; `mass` becomes that of such a body.
+  /// Makes the geom and the wall points; computes `mass`.
   void take(const BoxShape& box, dSpaceID space, double total, dMass& mass) {
     const auto& [x, y, z] = box.half_extents;
     geom_.reset(dCreateBox(space, 2 * x, 2 * y, 2 * z));
@@ -220,13 +219,13 @@ class OdeBody : public PhysicsBody {
   Shape shape_;
   Body body_;
   Geom geom_;
-  /// The points that can touch a wall first, in the body's own coordinates: the corners of a box.
-  /// That of a sphere depends on the wall: its centre stands for it, with its radius.
+  /// The points that can touch a wall first, in local coordinates: the corners of a box. For a
+  /// sphere the centre represents them, with its radius.
   std::vector<Vec3> wall_points_;
   double point_radius_ = 0;  ///< of a ball around each wall point
   double bounding_radius_ = 0;
   double mean_inertia_ = 0;  ///< per mass
-  double slow_time_ = 0;     ///< since it has become slow
+  double slow_time_ = 0;     ///< time since the body became slow
   bool frozen_ = false;
   bool support_lost_ = false;
   Pose frozen_pose_;
@@ -260,7 +259,7 @@ class OdeEngine final : public PhysicsEngine {
 
   void removeBody(PhysicsBody& body) override {
     auto& ode_body = static_cast<OdeBody&>(body);
-    // Contacts are not kept from step to step: all that are near may have leant on it.
+    // Contacts are not retained between steps: any body near may have been supported by it.
     const dGeomID space_as_geom = reinterpret_cast<dGeomID>(space_.get());
     dSpaceCollide2(ode_body.geom(), space_as_geom, nullptr, [](void*, dGeomID a, dGeomID b) {
       bodyOf(a).loseSupport();
@@ -284,8 +283,8 @@ class OdeEngine final : public PhysicsEngine {
   void step() override {
     if (std::exchange(support_lost_, false)) wakeUnsupported();
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
-      // Sleeping bodies, too: a body that is awake wakes those that it touches, and these need
-      // their support in the same step.
+      // Sleeping bodies, too: an awake body wakes those that it touches, and these need their
+      // support in the same step.
       bodies_.each([this](const OdeBody& body) {
         if (!body.frozen()) touchWalls(body);
       });
@@ -306,15 +305,15 @@ class OdeEngine final : public PhysicsEngine {
   }
 
  private:
-  /// The share of a velocity that damping takes in one substep.
+  /// The fraction of a velocity lost by damping in one substep.
   [[nodiscard]] double shareLost(double per_second) const {
     return 1 - std::pow(1 - per_second, time_);
   }
 
   static OdeBody& bodyOf(dGeomID geom) { return *static_cast<OdeBody*>(dGeomGetData(geom)); }
 
-  /// Wakes all bodies that are connected with one that has lost its support: the library lets a
-  /// body that is woken by another fall asleep at once, while that has hardly begun to fall.
+  /// Wakes all bodies connected with one that lost its support: the library lets bodies woken by
+  /// others fall asleep again at once, before they have begun to fall.
   void wakeUnsupported() {
     using Near = std::vector<std::pair<OdeBody*, OdeBody*>>;
     Near near;
@@ -346,8 +345,8 @@ class OdeEngine final : public PhysicsEngine {
     }
   }
 
-  /// Contacts with every wall that a point of the body may reach in the next substep. So the solver
-  /// stops even a fast body at the wall.
+  /// Adds contacts with every wall that a point of the body may reach in the next substep. So the
+  /// solver stops even fast bodies at the wall.
   void touchWalls(const OdeBody& body) {
     for (const HalfSpace& wall : walls_) {
       body.visitWallPoints(wall, time_, [&](const dReal* at, double distance) {
@@ -361,8 +360,7 @@ class OdeEngine final : public PhysicsEngine {
     }
   }
 
-  /// `approach`: the velocity along the normal at which the bodies may approach each other; 0 or
-  /// negative.
+  /// `approach`: the allowed velocity of approach along the normal; 0 or negative.
   void addContact(const dContactGeom& point, double approach, dBodyID a, dBodyID b) {
     dContact contact{};
     contact.geom = point;

@@ -1,4 +1,4 @@
-// Finds the wanted recording and replays it.
+// Finds the requested recording and replays it.
 
 #include "engines/replay.h"
 
@@ -18,15 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A recording in a directory, as its file name describes it.
+/// A recording in a directory, as described by its file name.
 struct Candidate {
   fs::path path;
-  std::size_t preference = 0;  ///< index of its extension: the lower, the better
+  std::size_t preference = 0;  ///< index of its extension: lower is better
   std::uint32_t objects = 0;
   std::uint32_t frames = 0;
 };
 
-/// What a file name says, if it names a recording of this scene and object type.
+/// Parses a file name; nothing unless it names a recording of this scene and object type.
 std::optional<Candidate> candidateOf(const fs::path& path, const std::string& scene,
                                      const std::string& object_type,
                                      const std::vector<std::string_view>& extensions) {
@@ -66,13 +66,13 @@ class ReplaySimulation final : public Simulation {
   }
 
   [[nodiscard]] const SceneInfo& scene() const override {
-    // Until the first frame the parameters may still change.
+    // The parameters may change until the first frame.
     if (!replay_) info_ = describe(*open());
     return info_;
   }
 
   [[nodiscard]] fs::path input() const override { return find(); }
-  /// Of what is replayed, even if another recording has taken its name meanwhile.
+  /// Of the open recording, even if its path now names another one.
   [[nodiscard]] std::string inputHash() override {
     return replay_ ? replay_->inputHash() : openRecordingFile(input())->hash();
   }
@@ -99,7 +99,7 @@ class ReplaySimulation final : public Simulation {
     return entryOf(objectTypes(), object_type_.value, "object type").listing.name;
   }
 
-  /// The number of bodies that the recording must have.
+  /// The required number of bodies in the recording.
   [[nodiscard]] std::int64_t recordedObjects() const {
     return objects_ / entry_.bodies_per_recorded;
   }
@@ -110,7 +110,7 @@ class ReplaySimulation final : public Simulation {
     return info;
   }
 
-  /// Opens the wanted recording and checks that it holds what its name says.
+  /// Opens the requested recording and checks that its contents match its name.
   [[nodiscard]] std::unique_ptr<Replay> open() const {
     const fs::path path = find();
     auto recording = openRecordingFile(path);
@@ -129,8 +129,8 @@ class ReplaySimulation final : public Simulation {
                        recordedObjects(), frames_, fmt::join(entry_.extensions, " or "));
   }
 
-  /// The wanted recording: the shortest that is long enough, or the longest when all frames are
-  /// wanted; among equals that with the preferred extension.
+  /// The requested recording: the shortest sufficient one, or the longest when all frames are
+  /// requested; among equals the one with the preferred extension.
   [[nodiscard]] fs::path find() const {
     const auto& extensions = entry_.extensions;
     if (needed_ == kBroadmarkExtension &&
@@ -149,7 +149,7 @@ class ReplaySimulation final : public Simulation {
     if (objects_ % entry_.bodies_per_recorded != 0) {
       throw InputError(fmt::format(
           "--engine {} makes {} bodies of each: {} is not a multiple of {}{}", engine_.value,
-          entry_.bodies_per_recorded, objects_, entry_.bodies_per_recorded, whatIsThere(there)));
+          entry_.bodies_per_recorded, objects_, entry_.bodies_per_recorded, availableText(there)));
     }
     if (fs::is_regular_file(input_)) return given();
     const Candidate* best = nullptr;
@@ -159,12 +159,12 @@ class ReplaySimulation final : public Simulation {
     }
     if (best == nullptr) {
       throw InputError(
-          fmt::format("{}: no recording of {}{}", input_, wanted(), whatIsThere(there)));
+          fmt::format("{}: no recording of {}{}", input_, wanted(), availableText(there)));
     }
     return best->path;
   }
 
-  /// The file that `input` names.
+  /// The file named by `input`.
   [[nodiscard]] fs::path given() const {
     fs::path path = input_;
     if (std::ranges::find(entry_.extensions, path.extension().string()) ==
@@ -180,7 +180,7 @@ class ReplaySimulation final : public Simulation {
     return a.preference < b.preference;
   }
 
-  /// The input directory, and those of its folders that baked recordings lie in.
+  /// The input directory, and its folders of baked recordings.
   [[nodiscard]] std::vector<fs::path> directories() const {
     std::vector<fs::path> all = {input_};
     for (const RecorderListing& recorder : builtinRecorders()) {
@@ -212,7 +212,7 @@ class ReplaySimulation final : public Simulation {
   }
 
   /// For messages: "; there are N1000 F50 (gives 8000 bodies), …".
-  [[nodiscard]] std::string whatIsThere(const std::vector<Candidate>& candidates) const {
+  [[nodiscard]] std::string availableText(const std::vector<Candidate>& candidates) const {
     if (fs::is_regular_file(input_)) return {};
     if (candidates.empty()) {
       return fmt::format("; there is none of {} {}", listing().name, objectTypeName());
@@ -224,12 +224,12 @@ class ReplaySimulation final : public Simulation {
         name += fmt::format(" (gives {} bodies)",
                             std::uint64_t{candidate.objects} * entry_.bodies_per_recorded);
       }
-      // Sorted: recordings of several kinds with equal counts follow each other.
+      // Sorted: recordings of several formats with equal counts are adjacent.
       if (names.empty() || names.back() != name) names.push_back(std::move(name));
     }
-    constexpr std::size_t kMost = 8;
-    if (names.size() > kMost) names[kMost] = "…";
-    names.resize(std::min(names.size(), kMost + 1));
+    constexpr std::size_t kMaxNames = 8;
+    if (names.size() > kMaxNames) names[kMaxNames] = "…";
+    names.resize(std::min(names.size(), kMaxNames + 1));
     return fmt::format("; there are {}", fmt::join(names, ", "));
   }
 

@@ -1,4 +1,4 @@
-// Engines that simulate nothing: they make their frames from a recording.
+// Engines without simulation: their frames come from a recording.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace broadmark::scenes {
 
-/// The frames of a recording; as they are, unless overridden.
+/// The frames of a recording; unchanged unless overridden.
 class Replay : public FrameSource, public PoseSource {
  public:
   explicit Replay(std::unique_ptr<Recording> recording) : recording_(std::move(recording)) {}
@@ -37,7 +37,7 @@ struct ReplayEntry {
   EngineListing listing;
   /// Bodies made from each recorded body.
   std::uint32_t bodies_per_recorded;
-  /// Extensions of the recordings that it reads, the preferred one first.
+  /// Extensions of readable recordings, the preferred one first.
   std::vector<std::string_view> extensions;
   /// The recording has one of these extensions.
   std::unique_ptr<Replay> (*create)(std::unique_ptr<Recording>);
@@ -49,8 +49,8 @@ namespace splitter {
 ReplayEntry entry();
 }
 
-/// A replay of a built-in scene: a simulation whose parameters say which recording it reads.
-/// `needed`: the extension of recordings that can hold the scene.
+/// A replay of a built-in scene: a simulation with parameters that select the recording. `needed`:
+/// the extension of recordings that can hold the scene.
 std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine,
                                        std::string_view needed);
 

@@ -17,7 +17,7 @@ constexpr std::size_t kParts = 8;
 /// The sign of part `part` along `axis`.
 constexpr float side(std::size_t part, int axis) { return (part >> axis & 1) != 0 ? 1.0F : -1.0F; }
 
-/// The centres of a body's parts: twice its position ± each of its turned half edges.
+/// The centres of a body's parts: twice its position ± each of its rotated half edges.
 std::array<Vec3, kParts> centresOf(const Vec3& half_extents, const Pose& pose) {
   const Eigen::Matrix3f edges = Eigen::Quaternionf(pose.rotation.data()).toRotationMatrix() *
                                 Eigen::Vector3f(half_extents.data()).asDiagonal();
@@ -31,8 +31,7 @@ std::array<Vec3, kParts> centresOf(const Vec3& half_extents, const Pose& pose) {
   return centres;
 }
 
-/// An eighth of a box that has grown to twice its size. The parts share their faces to the last
-/// bit.
+/// An eighth of a box that has grown to twice its size. The parts' faces coincide exactly.
 Aabb partOf(const Aabb& box, std::size_t part) {
   Aabb eighth;
   for (int axis = 0; axis < 3; ++axis) {
@@ -75,7 +74,7 @@ class Splitter final : public Replay {
     const auto whole = whole_.next();
     if (!whole) return {};
     forEachBody([this](std::size_t body, const Pose& pose, const auto& centres) {
-      // Each part is as large as the body was, and turned like it.
+      // Each part has the size and rotation of the body.
       const Vec3 extents = whole_.extents(body, pose.rotation);
       for (std::size_t part = 0; part < kParts; ++part) {
         boxes_[kParts * body + part] = boxAround(centres[part], extents);
@@ -84,7 +83,7 @@ class Splitter final : public Replay {
     return Frame{whole->index, boxes_};
   }
 
-  /// No body is turned in the initial pose.
+  /// Bodies are unrotated in the initial pose.
   std::span<const Aabb> unturnedBoxes() override { return boxes_; }
 
   /// Computed only on demand.

@@ -35,7 +35,7 @@ class Brownian final : public Scene {
 
  private:
   double launch_share_ = 0.01;
-  std::size_t next_ = 0;  ///< body to launch
+  std::size_t next_ = 0;  ///< next body to launch
 };
 
 }  // namespace

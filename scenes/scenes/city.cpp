@@ -1,10 +1,10 @@
 // City: buildings of very different sizes that never move, and a few bodies that drive and fly
-// along the streets between them. It tests broad phases with large ratios of size, pairs that stay
-// (buildings that overlap) and hardly any motion.
+// along the streets between them. It tests broad phases with large size ratios, persistent pairs
+// (overlapping buildings) and hardly any motion.
 //
 // Blocks form a square grid with streets between them. A block is divided into four lots, each of
 // these into four, and so on. Some lots are built on at each stage, so that large buildings stand
-// among small ones. More bodies mean a finer division and otherwise the same city.
+// among small ones. More bodies give a finer division of the same city.
 
 #include <algorithm>
 #include <cmath>
@@ -59,16 +59,16 @@ class City final : public Scene {
     const auto count = static_cast<std::size_t>(settings.objects);
     const auto moving =
         static_cast<std::size_t>(std::ceil(movers_ * static_cast<double>(count) - 1e-9));
-    kinds_.assign(count, Kind::building);
-    std::fill_n(kinds_.begin(), moving, Kind::mover);
-    random.shuffle(kinds_);  // ids must not tell buildings from movers
+    types_.assign(count, BodyType::building);
+    std::fill_n(types_.begin(), moving, BodyType::mover);
+    random.shuffle(types_);  // ids must be independent of the type
     lots_ = buildingLots(count - moving, settings.side(), random);
     drivers_.clear();
   }
 
   void place(std::size_t index, BodyDescription& body, const Settings& settings,
              Random& random) override {
-    if (kinds_[index] == Kind::mover) {
+    if (types_[index] == BodyType::mover) {
       placeMover(index, body, settings, random);
     } else {
       placeBuilding(body, settings, random);
@@ -77,8 +77,8 @@ class City final : public Scene {
 
   void start(Stage& stage) override {
     Scene::start(stage);
-    for (std::size_t i = 0; i < kinds_.size(); ++i) {
-      if (kinds_[i] == Kind::building) stage.bodies[i]->freeze();
+    for (std::size_t i = 0; i < types_.size(); ++i) {
+      if (types_[i] == BodyType::building) stage.bodies[i]->freeze();
     }
   }
 
@@ -87,16 +87,16 @@ class City final : public Scene {
   }
 
  private:
-  enum class Kind : std::uint8_t { building, mover };
+  enum class BodyType : std::uint8_t { building, mover };
 
   struct Driver {
     std::size_t id = 0;
     Course course;
-    float limit = 0;          ///< where the street ends, on both sides of the origin
+    float limit = 0;          ///< end of the street, on both sides of the origin
     float to_other_lane = 0;  ///< across the street
   };
 
-  /// One lot for each building, in random order.
+  /// One lot per building, in random order.
   [[nodiscard]] std::vector<Lot> buildingLots(std::size_t count, double side,
                                               Random& random) const {
     std::deque<Lot> open;
@@ -157,8 +157,8 @@ class City final : public Scene {
     course.lane[1] = onGround(body.shape, settings);
     if (random.uniform() < fliers_) course.lane[1] = static_cast<float>(random.between(-limit, 0));
 
-    // Movers keep to the right and turn where the street ends.
-    double middle = 1;  // of the street, across the city; around a single block it is the rim
+    // Movers keep to the right and turn at the end of the street.
+    double middle = 1;  // of the street, across the city; around a single block it is the edge
     if (blocks_ > 1) {
       const auto streets = static_cast<double>(blocks_ - 1);
       middle = (1 + std::floor(random.uniform() * streets)) / static_cast<double>(blocks_);
@@ -201,8 +201,8 @@ class City final : public Scene {
   double street_width_ = 0.2;
   double large_ = 0.12;
   double crowding_ = 1.1;
-  std::vector<Kind> kinds_;      ///< by body
-  std::vector<Lot> lots_;        ///< without a building yet
+  std::vector<BodyType> types_;  ///< by body
+  std::vector<Lot> lots_;        ///< without a building so far
   std::vector<Driver> drivers_;  ///< the movers
 };
 

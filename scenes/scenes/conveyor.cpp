@@ -1,8 +1,8 @@
 // Conveyor: belts carry bodies through the world at different speeds and cross each other. A body
-// at the end of its belt is put back to the start. So broad phases that rely on small moves meet
-// large ones in every frame.
+// at the end of its belt returns to the start. So broad phases that rely on small moves get large
+// ones in every frame.
 //
-// The belts lie along the edges of a cube within the world and reach from wall to wall: four along
+// The belts lie along the edges of a cube within the world and extend from wall to wall: four along
 // each axis, three of which cross at each of the cube's corners.
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class Conveyor final : public Scene {
   void place(std::size_t index, BodyDescription& body, const Settings& settings,
              Random& random) override {
     const Course course = courseOn(static_cast<std::int64_t>(index) % belts_, settings, random);
-    // A body must not meet the wall in the frame in which it passes the end.
+    // A body must not touch the wall in the frame in which it passes the end.
     const auto step = std::abs(course.speed) * static_cast<float>(settings.physics.time_step);
     const float limit = std::max(0.0F, farthestInside(body.shape, settings.side()) - step);
     body.pose = course.poseAt(static_cast<float>(random.between(-limit, limit)));
@@ -53,7 +53,7 @@ class Conveyor final : public Scene {
  private:
   struct Rider {
     Course course;
-    float limit = 0;  ///< where the belt ends, on both sides of the origin
+    float limit = 0;  ///< end of the belt, on both sides of the origin
   };
 
   /// A random line within belt `belt`.
@@ -77,7 +77,7 @@ class Conveyor final : public Scene {
     const Course& course = rider.course;
     const float along = body.pose().position[course.axis];
     if (course.speed > 0 ? along > rider.limit : along < -rider.limit) {
-      // As far from the start as it went beyond the end, to keep the stream even.
+      // Carries over the distance beyond the end, to keep the stream even.
       const float again = along - std::copysign(2 * rider.limit, course.speed);
       body.setPose(course.poseAt(std::clamp(again, -rider.limit, rider.limit)));
     }

@@ -26,7 +26,7 @@ float farthestInside(const Shape& shape, double side) {
 }
 
 double sizeOfMany(double most, Random& random) {
-  // The share of bodies larger than x is 1/x³.
+  // The fraction of bodies larger than x is 1/x³.
   return std::min(1 / std::cbrt(1 - random.uniform()), std::max(1.0, most));
 }
 

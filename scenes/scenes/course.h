@@ -1,5 +1,4 @@
-// Bodies that are driven along straight lines, whatever forces act on them; places and sizes of
-// bodies.
+// Bodies driven along straight lines regardless of forces; positions and sizes of bodies.
 #pragma once
 
 #include "broadmark/scenes/physics_engine.h"
@@ -13,19 +12,19 @@ struct Course {
   float speed = 0;  ///< along the axis; negative: backwards
   Vec3 lane{};      ///< a point of the line
 
-  /// The body's pose at `along` on the line, unturned.
+  /// The body's pose at `along` on the line, unrotated.
   [[nodiscard]] Pose poseAt(float along) const;
   /// The velocity of a body at `position` that follows the line: its speed, and a gentle pull back
   /// to the line after collisions.
   [[nodiscard]] Vec3 velocityAt(const Vec3& position) const;
 };
 
-/// The largest coordinate of a body's centre at which the body is inside a world of this side,
-/// however it is turned; 0 for a body larger than the world.
+/// The largest coordinate of a body's centre with the body inside a world of this side in any
+/// rotation; 0 for a body larger than the world.
 float farthestInside(const Shape&, double side);
 
-/// A random size from 1 to `most` (at least 1). Of bodies twice as large there are an eighth as
-/// many: large and small ones fill about the same room.
+/// A random size from 1 to `most` (at least 1). Doubling the size divides the number of bodies by
+/// eight: all sizes fill about the same volume.
 double sizeOfMany(double most, Random&);
 
 }  // namespace broadmark::scenes

@@ -16,10 +16,10 @@ using Point = std::array<int, 3>;
 
 int lengthSquared(const Point& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
 
-/// The `count` points of the integer lattice that are nearest to the origin, nearest first.
+/// The `count` points of the integer lattice nearest to the origin, in ascending distance.
 std::vector<Point> ballOfPoints(std::size_t count) {
   const double radius = std::cbrt(3 * static_cast<double>(count) / (4 * std::numbers::pi));
-  const int reach = static_cast<int>(radius) + 2;  // holds a ball of more than `count` points
+  const int reach = static_cast<int>(radius) + 2;  // a ball with more than `count` points
   std::vector<Point> points;
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
@@ -56,11 +56,11 @@ class Explosion final : public Scene {
     const auto count = static_cast<std::size_t>(settings.objects);
     places_ = ballOfPoints(count);
     outermost_ = count > 1 ? std::sqrt(lengthSquared(places_.back())) : 1;
-    // As many lattice cells as bodies have the ball's volume.
+    // The volume of the ball in lattice cells is the number of bodies.
     const double lattice_radius =
         std::cbrt(3 * static_cast<double>(count) / (4 * std::numbers::pi));
     spacing_ = settings.initial_radius * settings.side() / lattice_radius;
-    random.shuffle(places_);  // ids must not tell places
+    random.shuffle(places_);  // ids must be independent of positions
   }
 
   void place(std::size_t index, BodyDescription& body, const Settings& settings,

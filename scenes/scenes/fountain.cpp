@@ -1,6 +1,6 @@
-// Fountain: a nozzle in the floor throws bodies up; they fall, lie about and vanish. The jet swells
-// and dies down, and so the number of bodies rises and falls. A body that appears takes the id of
-// one that has vanished, often in the same frame.
+// Fountain: a nozzle in the floor throws bodies up; they fall, lie still and vanish. The jet swells
+// and subsides, and so the number of bodies rises and falls. A new body reuses the id of one that
+// has vanished, often in the same frame.
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,7 @@ class Fountain final : public Scene {
   }
 
  private:
-  /// So many lifetimes, in frames; at least one.
+  /// The duration in frames; at least one.
   [[nodiscard]] std::uint32_t framesOf(double lifetimes) const {
     return 1 + static_cast<std::uint32_t>(lifetimes * static_cast<double>(lifetime_));
   }
@@ -84,7 +84,7 @@ class Fountain final : public Scene {
   double spread_ = 0.2;
   double filled_ = 0.25;
   Lifetimes lifetimes_;
-  double due_ = 0;  ///< bodies to throw, a fraction included
+  double due_ = 0;  ///< bodies to throw, including a fraction
 };
 
 }  // namespace

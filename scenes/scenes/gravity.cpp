@@ -1,4 +1,4 @@
-// Gravity: a strong gravity whose direction keeps turning. All bodies move together and pile up on
+// Gravity: a strong gravity that keeps changing direction. All bodies move together and pile up on
 // one wall after another.
 
 #include "scenes/gravity.h"
@@ -14,7 +14,7 @@ namespace {
 
 Vec3 turnedAbout(const Vec3& axis, double angle, const Vec3& vector) {
   const Eigen::AngleAxisf rotation(static_cast<float>(angle), Eigen::Vector3f(axis.data()));
-  // Normalised, because rounding would change the force over thousands of turns.
+  // Normalised, because rounding errors would accumulate over thousands of turns.
   const Eigen::Vector3f turned = (rotation * Eigen::Vector3f(vector.data())).normalized();
   return {turned.x(), turned.y(), turned.z()};
 }

@@ -1,11 +1,11 @@
-// The turning force of the Gravity scene.
+// The rotating force of the Gravity scene.
 #pragma once
 
 #include "broadmark/scenes/shape.h"
 
 namespace broadmark::scenes {
 
-/// A direction that turns about an axis, which turns, too: in time it points to all sides.
+/// A direction that rotates about an axis that rotates, too: over time it points everywhere.
 struct TurningDirection {
   Vec3 direction{1, 0, 0};
   Vec3 axis{0, 1, 0};

@@ -1,4 +1,4 @@
-// Bodies that live for some frames and leave their id to others.
+// Bodies with limited lifetimes, and reuse of their ids.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@
 
 namespace broadmark::scenes {
 
-/// Which ids of a range are free, and when those that are not will be. The id that has become free
-/// last is taken first, often in the same frame.
+/// The free ids of a range, and the end times of the others. Reuses the most recently freed id
+/// first, often in the same frame.
 class Lifetimes {
  public:
-  /// The ids [first, end) are free, and no others.
+  /// Exactly the ids [first, end) become free.
   void reset(std::size_t first, std::size_t end) {
     free_.clear();
     ends_ = {};
     for (std::size_t id = end; id > first; --id) free_.push_back(id - 1);
   }
-  /// A free id, until removeOld() is called for frame `last` or a later one; nothing: none is free.
+  /// Takes a free id, until removeOld() is called for frame `last` or later; nothing: none is free.
   std::optional<std::size_t> take(std::uint32_t last) {
     if (free_.empty()) return {};
     const std::size_t id = free_.back();
@@ -31,7 +31,7 @@ class Lifetimes {
     ends_.emplace(last, id);
     return id;
   }
-  /// Removes the bodies whose time is over after frame `frame`.
+  /// Removes the bodies that expire after frame `frame`.
   void removeOld(Bodies& bodies, std::uint32_t frame) {
     while (!ends_.empty() && ends_.top().first <= frame) {
       const std::size_t id = ends_.top().second;

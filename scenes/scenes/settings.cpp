@@ -47,7 +47,7 @@ void Settings::visit(const ParameterVisitor& visit) {
 }
 
 double Settings::side() const {
-  // A world without bodies is as large as a world of one.
+  // An empty world is as large as a world of one body.
   const auto bodies = static_cast<double>(std::max<std::int64_t>(objects, 1));
   return std::cbrt(bodies * scale * scale * scale / density);
 }

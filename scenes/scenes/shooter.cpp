@@ -1,7 +1,7 @@
-// Shooter: a level of boxes of all sizes that never move, characters that wander about in it,
-// bursts of projectiles that live for a moment, and trigger volumes. Four layers: characters meet
-// all; projectiles meet the level and characters; the level does not meet itself, and triggers meet
-// characters alone. Nothing is pushed by a trigger: those are scenery.
+// Shooter: a level of boxes of all sizes that never move, characters that walk about in it, bursts
+// of short-lived projectiles, and trigger volumes. Four layers: characters collide with all;
+// projectiles with the level and characters; the level not with itself, and triggers only with
+// characters. Triggers push nothing: they are scenery.
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ LayerMatrix collisions() {
       .set(character, trigger);
 }
 
-/// Where each kind's ids end: the level's come first, then characters, triggers, projectiles.
+/// The ends of the id ranges: level, then characters, triggers, projectiles.
 struct Ends {
   std::size_t level = 0;
   std::size_t characters = 0;
@@ -96,7 +96,7 @@ class Shooter final : public Scene {
   void act(Stage& stage, std::uint32_t frame) override {
     lifetimes_.removeOld(stage.bodies, frame);
     for (std::size_t i = 0; i < headings_.size(); ++i) {
-      // Not all at once.
+      // Staggered over the frames.
       const std::uint64_t turn = (frame + i) % static_cast<std::uint64_t>(pause_);
       if (turn == 0 || frame == 1) headings_[i] = anyDirection(stage.random);
       walk(*stage.bodies[ends_.level + i], headings_[i], stage.settings);
@@ -127,7 +127,7 @@ class Shooter final : public Scene {
     const Settings& settings = stage.settings;
     const double most = largest_ * settings.side() / settings.scale;
     BodyDescription body = stage.describeAnywhere(id, sizeOfMany(most, stage.random));
-    // Half of it stands on the floor.
+    // Half of the boxes stand on the floor.
     if (id % 2 == 0) body.pose.position[1] = -farthestInside(body.shape, settings.side());
     return body;
   }

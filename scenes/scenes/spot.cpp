@@ -25,7 +25,7 @@ class Spot final : public Scene {
     visit({"hold", "frame after which the bodies fly apart", &hold_, 1, kMaxFrames});
   }
 
-  /// Physics would try to push each out of all the others.
+  /// Physics would try to separate all bodies from each other.
   [[nodiscard]] LayerMatrix pushing(const SceneInfo&) const override { return {}; }
 
   void prepare(const Settings& settings, Random& random) override {

@@ -1,4 +1,4 @@
-// Swarm: flocks that gather, wander about, turn at the walls and meet: moving clusters in an
+// Swarm: flocks that gather, wander about, turn at the walls and collide: moving clusters in an
 // otherwise empty world. Made for the boids engine; with other engines the flocks fly apart.
 
 #include <algorithm>

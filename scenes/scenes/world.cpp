@@ -1,6 +1,6 @@
-// World: static boxes of all sizes, as many as there is memory for, and a few bodies that fly among
-// them. Two layers: static boxes do not meet each other. The cost of a frame should follow the
-// movers; here it does, as static boxes are scenery.
+// World: static boxes of all sizes, up to the limit of memory, and a few bodies that fly among
+// them. Two layers: static boxes do not collide with each other. The cost of a frame should depend
+// on the movers only; here it does, as static boxes are scenery.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Worlds: many copies of a small FreeFall at the same place, as robots learn: a body meets only
-// those of its own copy. Each copy starts again after an episode, one after the other.
+// Worlds: many copies of a small FreeFall at the same place, as in robot learning: bodies collide
+// only within a copy. Each copy restarts after an episode, one after the other.
 
 #include <algorithm>
 #include <cstdint>
@@ -38,33 +38,34 @@ class Worlds final : public Scene {
     starts_.clear();
     starts_.reserve(static_cast<std::size_t>(settings.objects));
     world_size_ = static_cast<std::size_t>(bodies_per_world_);
-    one_ = ofOneWorld(settings);
+    copy_settings_ = ofOneWorld(settings);
   }
 
   void place(std::size_t index, BodyDescription& body, const Settings&, Random& random) override {
-    Scene::place(index, body, one_, random);
+    Scene::place(index, body, copy_settings_, random);
     starts_.push_back(body);
   }
 
   void start(Stage& stage) override {
-    stage.engine.setGravity({0, -static_cast<float>(one_.gravity * one_.side()), 0});
+    stage.engine.setGravity(
+        {0, -static_cast<float>(copy_settings_.gravity * copy_settings_.side()), 0});
   }
 
   void act(Stage& stage, std::uint32_t frame) override {
     const std::size_t worlds = (starts_.size() + world_size_ - 1) / world_size_;
     const auto episode = static_cast<std::size_t>(episode_);
     for (std::size_t world = 0; world < worlds; ++world) {
-      // Their episodes end one after the other.
+      // Episodes end one after the other.
       if ((frame + world * episode / worlds) % episode == 0) startAgain(world, stage);
     }
   }
 
  private:
-  /// The settings of a copy as a scene of its own.
+  /// The settings of a copy as a separate scene.
   [[nodiscard]] Settings ofOneWorld(const Settings& settings) const {
-    Settings one = settings;
-    one.objects = std::min(bodies_per_world_, settings.objects);
-    return one;
+    Settings copy = settings;
+    copy.objects = std::min(bodies_per_world_, settings.objects);
+    return copy;
   }
 
   void startAgain(std::size_t world, Stage& stage) const {
@@ -79,7 +80,7 @@ class Worlds final : public Scene {
   std::int64_t bodies_per_world_ = 20;
   std::int64_t episode_ = 100;
   std::size_t world_size_ = 1;
-  Settings one_;                         ///< of a copy
+  Settings copy_settings_;               ///< of a copy
   std::vector<BodyDescription> starts_;  ///< by body
 };
 

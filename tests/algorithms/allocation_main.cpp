@@ -1,7 +1,7 @@
-// Checks that the steady state of an algorithm allocates nothing. A program of its own, as it
+// Checks that the steady state of an algorithm allocates nothing. A separate program, as it
 // replaces malloc.
 //
-// Algorithms whose library allocates (by their traits) are left out: that is not in our hands.
+// Skips algorithms with a library that allocates (by their traits).
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::atomic<long> allocations{0};
 }  // namespace
 
 #if BROADMARK_COUNTS_ALLOCATIONS
-// operator new, aligned or not, comes through here too.
+// operator new, aligned or not, calls these too.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
@@ -66,27 +66,27 @@ namespace {
 using namespace broadmark;
 using namespace broadmark::tests;
 
-/// The algorithms that have all allocations in their own hands.
-std::vector<Algorithm> ourPairFinders() {
-  std::vector<Algorithm> all = pairFinders();
-  std::erase_if(all, [](const Algorithm& a) { return a.traits.library_allocates; });
-  return all;
+/// The algorithms without allocations by a library.
+std::vector<Algorithm> allocationFreeAlgorithms() {
+  std::vector<Algorithm> algorithms = pairFinders();
+  std::erase_if(algorithms, [](const Algorithm& a) { return a.traits.library_allocates; });
+  return algorithms;
 }
 
-/// Allocations while the same frames come around once more. The boxes move, so that incremental
-/// algorithms have work to do.
-long allocationsPerRound(const Algorithm& algorithm, const Configuration& way, std::size_t bodies,
-                         const CollisionFilter& filter = {}) {
+/// Allocations while the same frames are repeated. The boxes move, so that incremental algorithms
+/// have work to do.
+long allocationsPerRound(const Algorithm& algorithm, const Configuration& config,
+                         std::size_t bodies, const CollisionFilter& filter = {}) {
   constexpr int kRoundsBefore = 3;
   const auto frames = framesOf({"drifting", inputs::drifting}, bodies, 6);
   SceneInfo scene = sceneOf(frames);
   scene.filter = filter;
-  TestRun run(algorithm, way);
-  run.start(scene, frames[0]);
+  TestRun test_run(algorithm, config);
+  test_run.start(scene, frames[0]);
   long before = 0;
   for (int round = 0; round <= kRoundsBefore; ++round) {
     before = allocations;
-    for (const std::vector<Aabb>& boxes : frames) run.step(boxes);  // what follows events, too
+    for (const std::vector<Aabb>& boxes : frames) test_run.step(boxes);  // accumulates events, too
   }
   return allocations - before;
 }
@@ -99,7 +99,7 @@ class SteadyState : public testing::TestWithParam<Algorithm> {
   }
 };
 
-// Else the test below would always pass.
+// Otherwise the tests below would always pass.
 TEST(SteadyStateCheck, CounterSeesAllocations) {
   if (BROADMARK_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted here";
   const long before = allocations;
@@ -110,8 +110,8 @@ TEST(SteadyStateCheck, CounterSeesAllocations) {
 }
 
 TEST_P(SteadyState, AllocatesNothing) {
-  for (const Configuration& way : everyConfiguration(GetParam())) {
-    EXPECT_EQ(allocationsPerRound(GetParam(), way, 2000), 0) << describe(GetParam(), way);
+  for (const Configuration& config : allConfigurations(GetParam())) {
+    EXPECT_EQ(allocationsPerRound(GetParam(), config, 2000), 0) << describe(GetParam(), config);
   }
 }
 
@@ -120,13 +120,13 @@ TEST_P(SteadyState, AllocatesNothingInSeveralWorlds) {
   const CollisionFilter filter =
       filterOf(kBodies, LayerMatrix().set(0, 0),
                [](inputs::Random&, std::uint32_t body) { return BodyGroups{.world = body % 5}; });
-  for (const Configuration& way : everyConfiguration(GetParam())) {
-    EXPECT_EQ(allocationsPerRound(GetParam(), way, kBodies, filter), 0)
-        << describe(GetParam(), way);
+  for (const Configuration& config : allConfigurations(GetParam())) {
+    EXPECT_EQ(allocationsPerRound(GetParam(), config, kBodies, filter), 0)
+        << describe(GetParam(), config);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Algorithms, SteadyState, testing::ValuesIn(ourPairFinders()),
+INSTANTIATE_TEST_SUITE_P(Algorithms, SteadyState, testing::ValuesIn(allocationFreeAlgorithms()),
                          [](const auto& tested) { return testName(tested.param); });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// CGAL's box intersection: what its one parameter must not change, and what it cannot do.
+// CGAL's box intersection: independence of its parameter, and its limits.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class Cgal : public testing::Test {
     algorithm_ = *found;
   }
 
-  /// The pairs of one frame.
+  /// The pairs of a frame.
   std::vector<Pair> pairsOf(const std::vector<Aabb>& boxes, const ParameterValues& values = {}) {
     return sorted(TestRun(algorithm_, {}, values).start(boxes).step(boxes));
   }
@@ -41,7 +41,7 @@ TEST_F(Cgal, FindsTheSamePairsWhateverTheCutoff) {
   }
 }
 
-// A segment of the library's tree is open at its upper end, and the last one ends there.
+// A segment of the library's tree is open at its upper end; the last segment ends at that float.
 TEST_F(Cgal, RefusesBoxesThatBeginAtTheLargestFloat) {
   constexpr float kLargest = std::numeric_limits<float>::max();
   for (std::size_t axis = 0; axis < 3; ++axis) {

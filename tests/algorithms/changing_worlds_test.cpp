@@ -1,5 +1,5 @@
-// What every listed algorithm must do where bodies come and go, and not all pairs are wanted: the
-// right pairs, in every way it can be run, frame after frame.
+// Every listed algorithm must find the right pairs in every frame, in every configuration, in
+// worlds with bodies that appear and vanish, and with collision filters.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ namespace {
 class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> {
  protected:
   void SetUp() override {
-    for (const Configuration& way : everyConfiguration(GetParam())) {
-      runs_.emplace_back(describe(GetParam(), way), TestRun(GetParam(), way));
+    for (const Configuration& config : allConfigurations(GetParam())) {
+      test_runs_.emplace_back(describe(GetParam(), config), TestRun(GetParam(), config));
     }
   }
 
@@ -34,15 +34,16 @@ class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> 
     scene.filter = world.filter;
     std::vector<std::vector<Pair>> right;
     for (const auto& boxes : world.frames) right.push_back(bruteForcePairs(boxes, world.filter));
-    for (auto& [name, run] : runs_) {
+    for (auto& [name, test_run] : test_runs_) {
       SCOPED_TRACE(name + " on " + world.name + ", n = " + std::to_string(scene.objects));
       try {
-        run.start(scene, world.frames[0]);
+        test_run.start(scene, world.frames[0]);
         for (std::uint32_t i = 1; i < world.frames.size(); ++i) {
-          const PairRuns answer = run.step(world.frames[i]);
-          ASSERT_TRUE(isRight(answer, right[i], {i, world.frames[i]}, run.margin(), world.filter))
+          const PairRuns answer = test_run.step(world.frames[i]);
+          ASSERT_TRUE(
+              isRight(answer, right[i], {i, world.frames[i]}, test_run.margin(), world.filter))
               << "in frame " << i;
-          ASSERT_EQ(run.broadPhase().validate(), "") << "in frame " << i;
+          ASSERT_EQ(test_run.broadPhase().validate(), "") << "in frame " << i;
         }
       } catch (const UnsupportedError& error) {
         GTEST_SKIP() << error.what();
@@ -53,7 +54,7 @@ class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> 
   }
 
  private:
-  std::list<std::pair<std::string, TestRun>> runs_;  ///< one per configuration, with its name
+  std::list<std::pair<std::string, TestRun>> test_runs_;  ///< by name of the configuration
 };
 
 TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
@@ -65,7 +66,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
   std::size_t turn = 0;
   for (std::size_t kind = 0; kind < kinds; ++kind) {
     for (const auto& [presence_name, present] : inputs::kPresences) {
-      // Seven numbers, seven presences: shifted, or each would always come with the same one.
+      // Seven counts, seven presences: shifted, or each count would always have the same presence.
       const std::size_t n = kCounts[(turn + kind) % std::size(kCounts)];
       const inputs::Input& input = kInputs[turn++ % std::size(kInputs)];
       const NamedFilter filter = filters(n)[kind];
@@ -76,7 +77,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
   }
 }
 
-// So many bodies that every structure divides them.
+// Enough bodies for all structures to be divided.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsThemAmongManyBodies) {
   constexpr std::size_t kMany = 1500;
   std::size_t turn = 0;
@@ -88,7 +89,6 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemAmongManyBodies) {
   }
 }
 
-// Whatever the boxes are like.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsThemOnEveryInput) {
   constexpr std::size_t kSome = 120;
   const std::vector<NamedFilter> all = filters(kSome);
@@ -99,7 +99,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemOnEveryInput) {
   }
 }
 
-/// The boxes of the frames before, but for some bodies that take those of this one.
+/// Frames in which only bodies with changes(body, frame) take their boxes of the source's frame.
 std::vector<std::vector<Aabb>> framesInWhich(
     const std::vector<std::vector<Aabb>>& source,
     const std::function<bool(std::uint32_t body, std::uint32_t frame)>& changes) {
@@ -113,8 +113,8 @@ std::vector<std::vector<Aabb>> framesInWhich(
   return frames;
 }
 
-// A level that stands still and does not meet itself; one in twenty bodies moves about in it. One
-// of the level's moves once, one vanishes, comes back, and one appears late.
+// A static level without pairs of its own; one in twenty bodies moves in it. One body of the level
+// moves once, one vanishes and reappears, and one appears late.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInALevel) {
   constexpr std::size_t kMany = 1000;
   constexpr std::uint32_t kElevator = 1;
@@ -133,13 +133,13 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInALevel) {
     for (std::uint32_t frame = 0; frame < frames.size(); ++frame) {
       if (frame >= 3 && frame < 6) frames[frame][kDoor] = kEmptyBox;
       if (frame < 5) frames[frame][kLate] = kEmptyBox;
-      // All who move leave, and come back to where the level still is.
+      // All moving bodies vanish, and reappear in the unchanged level.
       for (std::uint32_t body = 0; frame == 2 && body < kMany; ++body) {
         if (moves(body)) frames[frame][body] = kEmptyBox;
       }
       if (frame == 7) frames[frame] = frames[frame - 1];  // nothing changes
     }
-    // Everything comes to where the first body is, and all leave but the level.
+    // All bodies move to the first body; then all but the level vanish.
     for (std::uint32_t body = 0; body < kMany; ++body) {
       frames[9][body] = frames[9][0];
       if (moves(body)) frames[10][body] = kEmptyBox;
@@ -161,9 +161,9 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemWhereOneBodyChangesOrNone) {
   }
 }
 
-// At the same place, a few bodies each; some poke out of the place by more than its size. A third
-// of the worlds is still; others appear late, with all of their bodies, vanish for a frame, or are
-// never there.
+// Worlds at the same position, with a few bodies each; some extend beyond the bounds by more than
+// their size. A third of the worlds is static; others appear late, with all bodies, vanish for a
+// frame, or are never present.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInAThousandWorlds) {
   constexpr std::uint32_t kWorlds = 1000;
   constexpr std::uint32_t kAll = 2500;
@@ -186,7 +186,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInAThousandWorlds) {
   check({"a thousand worlds", filter, frames, Aabb{{0, 0, 0, 0}, {5, 5, 5, 0}}});
 }
 
-// What a torture has found and is mended: a recording in tests/found is all that it takes.
+// Regressions of faults that a torture found: each recording in tests/found is checked.
 TEST_P(EveryAlgorithmInChangingWorlds, IsRightOnWhatATortureFound) {
   for (const auto& entry : std::filesystem::directory_iterator(places::source("tests/found"))) {
     const std::unique_ptr<Recording> recording = openRecordingFile(entry.path());

@@ -360,12 +360,12 @@ class ColumnsFamily : public testing::TestWithParam<Algorithm> {
   /// splits.
   void check(const std::vector<Aabb>& boxes) {
     const std::vector<Pair> expected = sweptPairs(boxes);
-    for (const Configuration& configuration : configurations(GetParam())) {
+    for (const Configuration& config : configurations(GetParam())) {
       for (const ParameterValues& parameters :
            {ParameterValues{}, ParameterValues{{"copy_cost", "1"}},
             ParameterValues{{"copy_cost", "1"}, {"split_threshold", "1"}}}) {
-        SCOPED_TRACE(caseName(caseOf(GetParam(), configuration, parameters)));
-        TestRun test_run(GetParam(), configuration, parameters);
+        SCOPED_TRACE(caseName(caseOf(GetParam(), config, parameters)));
+        TestRun test_run(GetParam(), config, parameters);
         SceneInfo scene;
         scene.objects = static_cast<std::uint32_t>(boxes.size());
         test_run.start(scene, inputs::clustered(boxes.size(), 99, 1));

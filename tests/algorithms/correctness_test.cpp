@@ -1,6 +1,5 @@
-// What every listed algorithm must do: the right pairs, on easy and awkward
-// inputs, for every number of bodies, instruction set and team size, frame after frame; and the
-// right events.
+// Every listed algorithm must find the right pairs and events in every frame, on simple and
+// degenerate inputs, for every number of bodies, instruction set and team size.
 
 #include <gtest/gtest.h>
 
@@ -20,20 +19,21 @@ constexpr std::size_t kCounts[] = {0, 1, 2, 3, 15, 16, 17, 31, 33, 100, 257, 100
 
 class EveryAlgorithm : public testing::TestWithParam<Algorithm> {
  protected:
-  /// Runs all configurations over the frames and checks every answer. False if it cannot run here.
+  /// Runs all configurations over the frames and checks every answer. Skips unsupported ones.
   void check(const std::string& input, const std::vector<std::vector<Aabb>>& frames) {
     const SceneInfo scene = sceneOf(frames);
     std::vector<std::vector<Pair>> right;
     for (const std::vector<Aabb>& boxes : frames) right.push_back(rightPairs(boxes));
     if (GetParam().traits.max_objects < scene.objects) return;
-    for (auto& [name, run] : runs_) {
+    for (auto& [name, test_run] : test_runs_) {
       SCOPED_TRACE(name + " on " + input + ", n = " + std::to_string(scene.objects));
       try {
-        run.start(scene, frames[0]);
+        test_run.start(scene, frames[0]);
         for (std::uint32_t i = 1; i < frames.size(); ++i) {
-          const PairRuns answer = run.step(frames[i]);
-          ASSERT_TRUE(isRight(answer, right[i], {i, frames[i]}, run.margin())) << "in frame " << i;
-          ASSERT_EQ(run.broadPhase().validate(), "") << "in frame " << i;
+          const PairRuns answer = test_run.step(frames[i]);
+          ASSERT_TRUE(isRight(answer, right[i], {i, frames[i]}, test_run.margin()))
+              << "in frame " << i;
+          ASSERT_EQ(test_run.broadPhase().validate(), "") << "in frame " << i;
         }
       } catch (const UnsupportedError& error) {
         GTEST_SKIP() << error.what();
@@ -43,18 +43,18 @@ class EveryAlgorithm : public testing::TestWithParam<Algorithm> {
     }
   }
 
-  void SetUp() override { runOnly(everyConfiguration(GetParam())); }
+  void SetUp() override { runOnly(allConfigurations(GetParam())); }
 
-  /// In these ways, and no others.
-  void runOnly(const std::vector<Configuration>& ways) {
-    runs_.clear();
-    for (const Configuration& way : ways) {
-      runs_.emplace_back(describe(GetParam(), way), TestRun(GetParam(), way));
+  /// Restricts the test to these configurations.
+  void runOnly(const std::vector<Configuration>& selected) {
+    test_runs_.clear();
+    for (const Configuration& config : selected) {
+      test_runs_.emplace_back(describe(GetParam(), config), TestRun(GetParam(), config));
     }
   }
 
  private:
-  std::list<std::pair<std::string, TestRun>> runs_;  ///< one per configuration, with its name
+  std::list<std::pair<std::string, TestRun>> test_runs_;  ///< by name of the configuration
 };
 
 TEST_P(EveryAlgorithm, FindsExactlyTheRightPairs) {
@@ -67,25 +67,25 @@ TEST_P(EveryAlgorithm, FindsExactlyTheRightPairs) {
   }
 }
 
-// Half a million pairs take long: only the widest instruction set with the largest team.
+// Half a million pairs are slow: only the widest instruction set with the largest team.
 TEST_P(EveryAlgorithm, ReportsAllPairsOfACrowd) {
   runOnly({configurations(GetParam()).back(), eventConfigurations(GetParam()).back()});
   check("a crowd", framesOf({"identical", inputs::identical}, 1000, 3));
 }
 
-// Frame 1 has nothing to do with the initial pose, and every frame is of another kind.
+// Frame 1 is unrelated to the initial pose, and every frame is of another input.
 TEST_P(EveryAlgorithm, CopesWithUnrelatedFrames) {
   constexpr std::size_t kCount = 300;
   std::vector<std::vector<Aabb>> frames;
   for (std::uint32_t i = 0; i < inputs::kAll.size(); ++i) {
-    // 7 is coprime to the number of inputs: neighbours in the list do not follow each other.
+    // 7 is coprime to the number of inputs: neighbours in the list are not consecutive frames.
     frames.push_back(inputs::kAll[i * 7 % inputs::kAll.size()].boxes(kCount, i, i));
   }
   check("unrelated frames", frames);
 }
 
-// The original's sweep and prune mixed up its bodies after the first frame: as many pairs as there
-// should be, but the wrong ones.
+// The original's sweep and prune mixed up its bodies after the first frame: the number of pairs was
+// right, but the pairs were wrong.
 TEST_P(EveryAlgorithm, KeepsBodiesApartOverManyFrames) {
   check("drifting", framesOf({"drifting", inputs::drifting}, 200, 60));
 }
@@ -95,13 +95,13 @@ TEST_P(EveryAlgorithm, ReportsPairsThatNeverMove) {
   check("still", framesOf({"still", inputs::still}, 600, 5));
 }
 
-// What the traits promise is what the tests above ran.
+// The tests above run all configurations that the traits declare.
 TEST_P(EveryAlgorithm, IsRunInEveryWayThatItsTraitsName) {
   const AlgorithmTraits& traits = GetParam().traits;
-  const std::vector<Configuration> ways = configurations(GetParam());
-  const bool several_threads = std::ranges::any_of(ways, [](auto way) { return way.threads > 1; });
+  const std::vector<Configuration> tested = configurations(GetParam());
+  const bool several_threads = std::ranges::any_of(tested, [](auto c) { return c.threads > 1; });
   EXPECT_EQ(several_threads, traits.parallel);
-  const auto widest = std::ranges::max_element(ways, {}, &Configuration::isa);
+  const auto widest = std::ranges::max_element(tested, {}, &Configuration::isa);
   EXPECT_EQ(widest->isa, traits.vectorised ? bestIsa() : Isa::scalar);
   EXPECT_TRUE(traits.parallel || !traits.on_device) << "a device has threads";
   EXPECT_GE(traits.max_objects, kCounts[std::size(kCounts) - 1]) << "tests would be skipped";
@@ -110,22 +110,21 @@ TEST_P(EveryAlgorithm, IsRunInEveryWayThatItsTraitsName) {
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithm, testing::ValuesIn(pairFinders()),
                          [](const auto& tested) { return testName(tested.param); });
 
-/// Counters are told while boxes move, and after frames in which nothing did.
+/// Compares the counters of a frame with moving boxes and of a static frame.
 void expectLessWork(const Algorithm& algorithm, AnswerKind answer) {
   const auto frames = framesOf({"uniform", inputs::uniform}, 300, 3);
-  TestRun run(algorithm, {.answer = answer});
-  run.start(sceneOf(frames), frames[0]);
-  run.step(frames[1]);
-  run.step(frames[2]);
-  const Counters moving = countersOf(run.broadPhase());
-  for (int i = 0; i < 3; ++i) run.step(frames[2]);
-  const Counters still = countersOf(run.broadPhase());
+  TestRun test_run(algorithm, {.answer = answer});
+  test_run.start(sceneOf(frames), frames[0]);
+  test_run.step(frames[1]);
+  test_run.step(frames[2]);
+  const Counters moving = countersOf(test_run.broadPhase());
+  for (int i = 0; i < 3; ++i) test_run.step(frames[2]);
+  const Counters still = countersOf(test_run.broadPhase());
   EXPECT_TRUE(std::ranges::any_of(moving, [&](const auto& counter) {
     return counter.second > 0 && still.at(counter.first) == 0;
   })) << "no counter falls to 0";
 }
 
-// They show by a counter that they spare themselves work.
 TEST(IncrementalAlgorithms, DoLessWhenNothingMoves) {
   for (const Algorithm& algorithm : pairFinders()) {
     if (!algorithm.traits.incremental) continue;
@@ -161,8 +160,8 @@ bool consistsOf(std::string_view list, std::initializer_list<std::string_view> a
   }
 }
 
-/// A phrase within a sentence: it begins with a lower-case letter or a name that the source has,
-/// and has no full stop.
+/// A phrase within a sentence: begins with a lower-case letter or a name from the source, and has
+/// no full stop.
 bool isPhrase(const std::string& text, const std::string& source = {}) {
   const std::string first_word = text.substr(0, text.find_first_of(" ',"));
   if (first_word.empty() || text.ends_with('.')) return false;
@@ -170,7 +169,7 @@ bool isPhrase(const std::string& text, const std::string& source = {}) {
          source.find(first_word) != std::string::npos;
 }
 
-/// Parameter `name` of an instance, raised to the most it may be; the margin before and after.
+/// The margin of an instance before and after setting parameter `name` to its maximum.
 std::pair<float, float> marginBeforeAndAfterRaising(BroadPhase& algorithm, std::string_view name) {
   const float before = algorithm.margin();
   algorithm.visitParameters([&](const Parameter& parameter) {
@@ -218,12 +217,12 @@ TEST_P(EveryListedAlgorithm, ExplainsItsParameters) {
     EXPECT_TRUE(isPhrase(std::string(parameter.doc))) << parameter.name;
     EXPECT_EQ(defaults.count(std::string(parameter.name)), 1U) << parameter.name;
   });
-  // Names are unique, and every default is a value that may be set.
+  // Names are unique, and every default is a valid value.
   EXPECT_EQ(parameterNames(*algorithm).size(), defaults.size());
   EXPECT_NO_THROW(setParameters(*algorithm, defaults));
 }
 
-// A conservative algorithm has a parameter that says how far, and margin() goes by it.
+// margin() of a conservative algorithm depends on its parameter `margin`.
 TEST_P(EveryListedAlgorithm, HasAMarginOnlyFromItsParameter) {
   const std::unique_ptr<BroadPhase> algorithm = GetParam().create();
   if (algorithm->margin() == 0) return;

@@ -1,5 +1,5 @@
-// Bullet's dynamic trees: no stale pairs, no extra ones beyond the declared margin, and a margin
-// for each instance though Bullet has but one.
+// Bullet's dynamic trees: no stale pairs, no extra pairs beyond the declared margin, and a margin
+// for each instance, although Bullet's margin is global.
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ namespace {
 class Dbvt : public testing::TestWithParam<std::string> {
  protected:
   static TestRun start(const std::vector<Aabb>& first, const ParameterValues& values = {}) {
-    TestRun run(algorithmOf(GetParam()), {}, values);
-    run.start(first);
-    return run;
+    TestRun test_run(algorithmOf(GetParam()), {}, values);
+    test_run.start(first);
+    return test_run;
   }
 
-  static std::vector<Pair> step(TestRun& run, const std::vector<Aabb>& boxes) {
-    std::vector<Pair> answer = sorted(run.step(boxes));
-    EXPECT_EQ(run.broadPhase().validate(), "");
+  static std::vector<Pair> step(TestRun& test_run, const std::vector<Aabb>& boxes) {
+    std::vector<Pair> answer = sorted(test_run.step(boxes));
+    EXPECT_EQ(test_run.broadPhase().validate(), "");
     return answer;
   }
 };
@@ -33,7 +33,7 @@ Aabb unitCubeAt(float x) { return inputs::boxAt({x, 0, 0}, {1, 1, 1}); }
 constexpr Pair kPair = {0, 1};
 
 TEST_P(Dbvt, DropsStalePairsAtOnce) {
-  // More pairs than a tenth, which is what Bullet would look through in one frame.
+  // More pairs than the tenth that Bullet would check in a frame.
   std::vector<Aabb> boxes = inputs::clustered(500, 0, 1);
   TestRun dbvt = start(boxes);
   EXPECT_EQ(step(dbvt, boxes), bruteForcePairs(boxes));
@@ -46,16 +46,16 @@ TEST_P(Dbvt, StalePairsDoNotPileUp) {
   TestRun dbvt = start(frames[0]);
   for (const std::vector<Aabb>& boxes : frames) {
     const std::vector<Pair> found = step(dbvt, boxes);
-    const PairRun run = found;
+    const PairRun pair_run = found;
     const auto difference =
-        findDifference({&run, 1}, bruteForcePairs(boxes), {0, boxes}, dbvt.margin());
+        findDifference({&pair_run, 1}, bruteForcePairs(boxes), {0, boxes}, dbvt.margin());
     EXPECT_FALSE(difference.isMismatch());
-    // The margin is a twentieth of a box or so.
+    // The margin is about a twentieth of a box.
     EXPECT_LT(difference.allowed_extra_count, found.size() / 2);
   }
 }
 
-// Forth, which enlarges the leaf, and back to the other end of it.
+// A body moves forth, which enlarges its leaf, and back to the other end of the leaf.
 TEST_P(Dbvt, ReachesAsFarAsItDeclaresAndNoFarther) {
   for (const auto& [gap, found] : {std::pair{0.085F, true}, std::pair{0.105F, false}}) {
     const Aabb other = unitCubeAt(0.995F + gap);
@@ -77,41 +77,40 @@ TEST_P(Dbvt, TakesItsMarginFromTheParameter) {
   EXPECT_TRUE(step(usual, next).empty());
 }
 
-/// Whether the run's answer for frame `index` is right and its trees are in order.
-testing::AssertionResult stepIsRight(TestRun& run, std::uint32_t index,
+/// Whether the run's answer for frame `index` is right and its trees are valid.
+testing::AssertionResult stepIsRight(TestRun& test_run, std::uint32_t index,
                                      const std::vector<Aabb>& boxes) {
-  auto right = isRight(run.step(boxes), rightPairs(boxes), {index, boxes}, run.margin());
-  if (!right) return right << " in frame " << index << ", margin " << run.margin();
-  const std::string fault = run.broadPhase().validate();
+  auto right = isRight(test_run.step(boxes), rightPairs(boxes), {index, boxes}, test_run.margin());
+  if (!right) return right << " in frame " << index << ", margin " << test_run.margin();
+  const std::string fault = test_run.broadPhase().validate();
   if (fault.empty()) return testing::AssertionSuccess();
   return testing::AssertionFailure() << fault << " in frame " << index;
 }
 
-// Bullet's margin belongs to the process, yet each of two instances keeps its own: with the
-// other's, leaves of the exact one would reach too far, and the wide one would reinsert as many
-// bodies.
+// Bullet's margin is global, yet each of two instances has its own: with the other's margin, the
+// exact instance would have too large leaves, and the wide instance would reinsert as many bodies.
 TEST_P(Dbvt, InstancesThatTakeTurnsKeepTheirMargins) {
   const auto frames = framesOf({"drifting", inputs::drifting}, 200, 30);
   TestRun wide = start(frames[0], {{"margin", "0.5"}});
   TestRun exact = start(frames[0], {{"margin", "0"}});
-  std::uint64_t of_wide = 0;
-  std::uint64_t of_exact = 0;
+  std::uint64_t reinsertions_wide = 0;
+  std::uint64_t reinsertions_exact = 0;
   for (std::uint32_t i = 1; i < frames.size(); ++i) {
     ASSERT_TRUE(stepIsRight(wide, i, frames[i]));
     ASSERT_TRUE(stepIsRight(exact, i, frames[i]));
-    of_wide += countersOf(wide.broadPhase()).at("reinsertions");
-    of_exact += countersOf(exact.broadPhase()).at("reinsertions");
+    reinsertions_wide += countersOf(wide.broadPhase()).at("reinsertions");
+    reinsertions_exact += countersOf(exact.broadPhase()).at("reinsertions");
   }
-  EXPECT_LT(of_wide, of_exact / 2);
+  EXPECT_LT(reinsertions_wide, reinsertions_exact / 2);
 }
 
-// For ThreadSanitizer: the host lets only one of them use the margin at a time.
+// For ThreadSanitizer: the host serialises the use of the margin.
 TEST_P(Dbvt, RunsOnTwoThreadsKeepTheirMargins) {
   const auto frames = framesOf({"drifting", inputs::drifting}, 200, 30);
   const auto follow = [&](const char* margin) {
-    TestRun run = start(frames[0], {{"margin", margin}});
+    TestRun test_run = start(frames[0], {{"margin", margin}});
     for (std::uint32_t i = 1; i < frames.size(); ++i) {
-      ASSERT_TRUE(stepIsRight(run, i, frames[i]));
+      ASSERT_TRUE(stepIsRight(test_run, i, frames[i]));
     }
   };
   std::thread other([&] { follow("0.5"); });
@@ -134,7 +133,7 @@ TEST_P(Dbvt, IsExactWithoutAMargin) {
   }
 }
 
-// Bullet keeps a leaf as long as it holds the box, however small that has become.
+// Bullet retains a leaf while it contains the box, even if the box has become small.
 TEST_P(Dbvt, LeavesShrinkWithTheirBoxes) {
   const Aabb other = unitCubeAt(3);
   TestRun dbvt = start({inputs::boxAt({0, 0, 0}, {4, 4, 4}), other});
@@ -145,20 +144,20 @@ TEST_P(Dbvt, LeavesShrinkWithTheirBoxes) {
 TEST_P(Dbvt, WorksOnlyForWhatMoves) {
   std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
   TestRun dbvt = start(boxes);
-  for (int frame = 0; frame < 4; ++frame) {  // into the tree of bodies at rest
+  for (int frame = 0; frame < 4; ++frame) {  // bodies move into the tree of resting bodies
     EXPECT_EQ(step(dbvt, boxes), bruteForcePairs(boxes));
     EXPECT_EQ(countersOf(dbvt.broadPhase()).at("moves"), 0U);
     EXPECT_EQ(countersOf(dbvt.broadPhase()).at("reinsertions"), 0U);
   }
-  const auto move_one = [&](float x) {
+  const auto move_body = [&](float x) {
     boxes[5] = unitCubeAt(x);
     step(dbvt, boxes);
     EXPECT_EQ(countersOf(dbvt.broadPhase()).at("moves"), 1U);
     return countersOf(dbvt.broadPhase()).at("reinsertions");
   };
-  EXPECT_EQ(move_one(1), 1U);      // out of that tree
-  EXPECT_EQ(move_one(1.5F), 1U);   // out of its leaf
-  EXPECT_EQ(move_one(1.51F), 0U);  // about in its leaf
+  EXPECT_EQ(move_body(1), 1U);      // leaves that tree
+  EXPECT_EQ(move_body(1.5F), 1U);   // leaves its leaf
+  EXPECT_EQ(move_body(1.51F), 0U);  // stays in its leaf
 }
 
 TEST_P(Dbvt, DrawsBothTrees) {

@@ -1,4 +1,4 @@
-// The grid families and what they are made of: cells, phantom bits, shares of the work.
+// The grid families and their components: cells, phantom bits, work shares.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ CellGrid gridOver(const std::vector<Aabb>& boxes, std::size_t cells, bool column
   return grid;
 }
 
-/// Cubes of edge 5 around one another, in a grid whose cells are about as long: most share several.
+/// Cubes with edges of 8 or 0.5 in a cube of edge 30: most pairs share several cells.
 std::vector<Aabb> large(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   return inputs::generate(n, frame, seed, [&](inputs::Random& random, std::size_t i) {
     const float edge = i % 4 == 0 ? 8.0F : 0.5F;
@@ -66,7 +66,7 @@ TEST(CellGrid, FlatScenesAreCutWhereTheyExtend) {
   EXPECT_EQ(grid.counts()[2], 1);
 }
 
-// One body that has fallen out of the world must not leave all others in one cell.
+// A body that has fallen out of the world must not put all others into a single cell.
 TEST(CellGrid, IsNotStretchedByABodyFarOff) {
   std::vector<Aabb> boxes = inputs::uniform(5000, 0, 1);
   boxes[1234] = inputs::boxAt({0, -1e9F, 0}, {1, 1, 1});
@@ -81,7 +81,7 @@ TEST(CellGrid, IsNotStretchedByABodyFarOff) {
   EXPECT_LT(fullest, 400);
 }
 
-// Nor must one huge box make all cells huge.
+// A huge box must not make all cells huge.
 TEST(CellGrid, IsNotCoarsenedByAHugeBox) {
   std::vector<Aabb> boxes = inputs::uniform(200, 0, 1);
   boxes[100] = inputs::boxAt({-1e6F, -1e6F, -1e6F}, {2e6F, 2e6F, 2e6F});
@@ -90,7 +90,7 @@ TEST(CellGrid, IsNotCoarsenedByAHugeBox) {
   EXPECT_EQ(grid.touched(boxes[100]).count(), grid.size());
 }
 
-// Objects get their shapes by number, in turn; a sample by a stride might see but one of them.
+// Shapes of objects alternate by number; a sample with a stride could contain only one shape.
 TEST(CellGrid, SeesAllShapesThatComeInTurn) {
   std::vector<Aabb> boxes;
   for (std::size_t i = 0; i < 20'480; ++i) {
@@ -99,10 +99,10 @@ TEST(CellGrid, SeesAllShapesThatComeInTurn) {
     boxes.push_back(inputs::boxAt({x, 0, 0}, {edge, edge, edge}));
   }
   const CellGrid grid = gridOver(boxes, 20'480);
-  EXPECT_LE(grid.counts()[0], 205 / 7);  // cells at least nearly twice as long as most boxes
+  EXPECT_LE(grid.counts()[0], 205 / 7);  // cells are nearly twice as long as most boxes, or more
 }
 
-/// In how many of the cells that both touch a pair would be reported.
+/// The number of common cells in which a pair would be reported.
 int timesReported(const CellGrid& grid, const Aabb& a, const Aabb& b) {
   std::map<std::size_t, CellBody> cells;
   grid.forEachCell(grid.touched(a),
@@ -136,18 +136,18 @@ TEST(CellGrid, CellsTileTheBounds) {
   const CellGrid grid = gridOver(boxes, 64);
   ASSERT_EQ(grid.size(), 64U);
   double volume = 0;
-  Aabb all = grid.cell(0, bounds);
+  Aabb covered = grid.cell(0, bounds);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     const Aabb cell = grid.cell(i, bounds);
-    all = merged(all, cell);
-    double of_cell = 1;
+    covered = merged(covered, cell);
+    double cell_volume = 1;
     for (int axis = 0; axis < 3; ++axis) {
       ASSERT_LT(cell.min[axis], cell.max[axis]);
-      of_cell *= static_cast<double>(cell.max[axis]) - cell.min[axis];
+      cell_volume *= static_cast<double>(cell.max[axis]) - cell.min[axis];
     }
-    volume += of_cell;
+    volume += cell_volume;
   }
-  EXPECT_EQ(all, bounds);
+  EXPECT_EQ(covered, bounds);
   double expected = 1;
   for (int axis = 0; axis < 3; ++axis) expected *= double{bounds.max[axis]} - bounds.min[axis];
   EXPECT_NEAR(volume / expected, 1, 1e-4);
@@ -157,13 +157,13 @@ TEST(WorkShares, HoldEveryRowOnceAndTheSameWork) {
   for (const int threads : {1, 2, 3, 5}) {
     ThreadTeam team(threads);
     for (const std::uint32_t count : {0U, 1U, 63U, 64U, 65U, 10'007U}) {
-      // One crowded cell behind many sparse rows.
+      // A crowded cell after many sparse rows.
       std::vector<std::uint32_t> ends(count);
       for (std::uint32_t i = 0; i < count; ++i) ends[i] = i < count / 2 ? i + 1 : count;
       WorkShares shares;
       shares.measureRows(ends, team);
       std::size_t next = 0;
-      std::uint64_t most = 0;
+      std::uint64_t max = 0;
       std::uint64_t total = 0;
       for (int worker = 0; worker < threads; ++worker) {
         const Range rows = shares.of(worker);
@@ -172,12 +172,12 @@ TEST(WorkShares, HoldEveryRowOnceAndTheSameWork) {
         next = rows.end;
         std::uint64_t work = 0;
         for (std::size_t i = rows.begin; i < rows.end; ++i) work += ends[i] - i;
-        most = std::max(most, work);
+        max = std::max(max, work);
         total += work;
       }
       EXPECT_EQ(next, count);
       if (count > 10'000) {
-        EXPECT_LT(static_cast<double>(most), 1.1 * static_cast<double>(total) / threads);
+        EXPECT_LT(static_cast<double>(max), 1.1 * static_cast<double>(total) / threads);
       }
     }
   }
@@ -185,26 +185,27 @@ TEST(WorkShares, HoldEveryRowOnceAndTheSameWork) {
 
 class Grids : public testing::TestWithParam<Algorithm> {
  protected:
-  /// A run that has seen an unrelated initial pose.
-  TestRun begun(const Configuration& way, const std::string& objects_per_cell, std::size_t n) {
-    TestRun run(GetParam(), way, {{"objects_per_cell", objects_per_cell}});
+  /// A run with an unrelated initial pose.
+  TestRun startedRun(const Configuration& config, const std::string& objects_per_cell,
+                     std::size_t n) {
+    TestRun test_run(GetParam(), config, {{"objects_per_cell", objects_per_cell}});
     SceneInfo scene;
     scene.objects = static_cast<std::uint32_t>(n);
     scene.world = {{-1, -1, -1, 0}, {1, 1, 1, 0}};  // most bodies are outside
-    run.start(scene, inputs::clustered(n, 99, 1));
-    return run;
+    test_run.start(scene, inputs::clustered(n, 99, 1));
+    return test_run;
   }
 
-  /// In every configuration, with cells for one body, a few, and all of them.
+  /// Checks every configuration, with cells for one body, for a few, and for all.
   void check(const std::vector<Aabb>& boxes) {
     const std::vector<Pair> right = sweptPairs(boxes);
-    for (const Configuration& way : configurations(GetParam())) {
+    for (const Configuration& config : configurations(GetParam())) {
       for (const std::string objects_per_cell : {"1", "10", "1000000000"}) {
-        SCOPED_TRACE(describe(GetParam(), way) + ", objects_per_cell " + objects_per_cell);
-        TestRun run = begun(way, objects_per_cell, boxes.size());
-        ASSERT_EQ(sorted(run.step(boxes)), right);
-        ASSERT_EQ(run.broadPhase().validate(), "");
-        const Counters counters = countersOf(run.broadPhase());
+        SCOPED_TRACE(describe(GetParam(), config) + ", objects_per_cell " + objects_per_cell);
+        TestRun test_run = startedRun(config, objects_per_cell, boxes.size());
+        ASSERT_EQ(sorted(test_run.step(boxes)), right);
+        ASSERT_EQ(test_run.broadPhase().validate(), "");
+        const Counters counters = countersOf(test_run.broadPhase());
         ASSERT_LE(counters.at("copies"), 8 * boxes.size());
         ASSERT_LE(counters.at("cells"), std::max<std::size_t>(boxes.size() * 5 / 2, 1));
       }
@@ -223,13 +224,13 @@ TEST_P(Grids, TestOneHugeBoxAmongManySmall) {
   boxes[700] = inputs::boxAt({-1e6F, 3, -1e6F}, {2e6F, 17, 2e6F});  // a floor
   check(boxes);
 
-  TestRun run = begun({bestIsa(), 1}, "10", boxes.size());
-  run.step(boxes);
-  EXPECT_EQ(countersOf(run.broadPhase()).at("large bodies"), 1U);
-  EXPECT_GT(countersOf(run.broadPhase()).at("cells"), 100U);
+  TestRun test_run = startedRun({bestIsa(), 1}, "10", boxes.size());
+  test_run.step(boxes);
+  EXPECT_EQ(countersOf(test_run.broadPhase()).at("large bodies"), 1U);
+  EXPECT_GT(countersOf(test_run.broadPhase()).at("cells"), 100U);
 }
 
-// Bars along each of the axes: the mean box is long, yet all of them touch many cells.
+// Bars along each axis: the mean box is long, yet all touch many cells.
 TEST_P(Grids, KeepManyLongBoxesFewCopies) {
   check(inputs::generate(400, 0, 1, [](inputs::Random& random, std::size_t i) {
     inputs::Vec3 edges = {0.1F, 0.1F, 0.1F};
@@ -258,8 +259,8 @@ TEST_P(Grids, CopeWithABodyFarOff) {
   check(boxes);
 }
 
-// The original missed pairs whenever the number of bodies was not divisible by that of threads, and
-// raced when a cell held more than a thread's share.
+// The original missed pairs if the number of bodies was not divisible by the number of threads, and
+// had a data race if a cell had more than a thread's share.
 TEST_P(Grids, LoseNothingWhateverTheTeam) {
   if (!GetParam().traits.parallel) GTEST_SKIP() << "uses one thread";
   for (const std::size_t n : {5U, 1009U}) {
@@ -267,8 +268,8 @@ TEST_P(Grids, LoseNothingWhateverTheTeam) {
       const std::vector<Aabb> frame = boxes(n, 1, 3);
       const std::vector<Pair> right = bruteForcePairs(frame);
       for (const int threads : {1, 2, 3, 4, 5, 6, 7, 8, 13}) {
-        TestRun run = begun({bestIsa(), threads}, "20", n);
-        EXPECT_EQ(sorted(run.step(frame)), right) << threads << " threads, n = " << n;
+        TestRun test_run = startedRun({bestIsa(), threads}, "20", n);
+        EXPECT_EQ(sorted(test_run.step(frame)), right) << threads << " threads, n = " << n;
       }
     }
   }
@@ -277,26 +278,26 @@ TEST_P(Grids, LoseNothingWhateverTheTeam) {
 TEST_P(Grids, FindAllPairsOfALargerFrame) {
   constexpr std::size_t kCount = 20'000;
   for (const inputs::Generator boxes : {inputs::assorted, inputs::clustered}) {
-    TestRun run(GetParam(), {bestIsa(), 3});
-    run.start(boxes(kCount, 0, 1));
+    TestRun test_run(GetParam(), {bestIsa(), 3});
+    test_run.start(boxes(kCount, 0, 1));
     const std::vector<Aabb> frame = boxes(kCount, 1, 1);
-    EXPECT_EQ(sorted(run.step(frame)), sweptPairs(frame));
-    EXPECT_GE(countersOf(run.broadPhase()).at("cells"), 12U);
+    EXPECT_EQ(sorted(test_run.step(frame)), sweptPairs(frame));
+    EXPECT_GE(countersOf(test_run.broadPhase()).at("cells"), 12U);
   }
 }
 
 TEST_P(Grids, DrawCellsThatHoldSomething) {
-  TestRun run = begun({bestIsa(), 1}, "1", 20'000);
-  run.step(inputs::uniform(20'000, 0, 1));
-  const std::size_t many = drawingOf(run.broadPhase()).boxes().size();
+  TestRun test_run = startedRun({bestIsa(), 1}, "1", 20'000);
+  test_run.step(inputs::uniform(20'000, 0, 1));
+  const std::size_t many = drawingOf(test_run.broadPhase()).boxes().size();
   EXPECT_GT(many, 500U);
-  EXPECT_LE(many, std::min<std::size_t>(countersOf(run.broadPhase()).at("cells"), 10'000));
+  EXPECT_LE(many, std::min<std::size_t>(countersOf(test_run.broadPhase()).at("cells"), 10'000));
 
-  // Two far corners: two cells hold something.
+  // Two distant corners: two occupied cells.
   std::vector<Aabb> corners(8, inputs::boxAt({0, 0, 0}, {1, 1, 1}));
   std::fill_n(corners.begin(), 4, inputs::boxAt({90, 90, 90}, {1, 1, 1}));
-  run.start(corners).step(corners);
-  const RecordedDrawing two = drawingOf(run.broadPhase());
+  test_run.start(corners).step(corners);
+  const RecordedDrawing two = drawingOf(test_run.broadPhase());
   ASSERT_EQ(two.boxes().size(), 2U);
   for (const RecordedDrawing::Box& drawn : two.boxes()) {
     EXPECT_EQ(merged(drawn.box, boundsOf(corners)), boundsOf(corners));

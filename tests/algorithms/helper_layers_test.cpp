@@ -1,5 +1,4 @@
-// The layers that algorithms derive from: what they do by themselves, and which mistakes they
-// notice.
+// The base classes of algorithms: their own behaviour, and the mistakes that they detect.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +9,7 @@
 namespace broadmark::tests {
 namespace {
 
-/// Each worker reports the pair of its own number and the next.
+/// Each worker reports the pair (worker, worker + 1).
 class OnePair : public PairBroadPhase {
  public:
   void updateObjects(const Frame&) override {}
@@ -23,7 +22,7 @@ class OnePair : public PairBroadPhase {
   }
 };
 
-/// Overrides initialize() without calling its base's.
+/// Overrides initialize() without a call of the base class.
 class ForgetfulPair final : public OnePair {
  public:
   void initialize(const SceneInfo&, const Frame&, ExecutionContext&) override {}
@@ -67,8 +66,8 @@ TEST(PairBroadPhase, NoticesThatItsInitializeWasNotCalled) {
   EXPECT_THROW(algorithm.searchOverlaps(), std::logic_error);
 }
 
-/// Shows the boxes that the layer keeps.
-class KeptBoxes final : public BoxBroadPhase {
+/// Exposes the boxes that the layer stores.
+class StoredBoxes final : public BoxBroadPhase {
  public:
   using BoxBroadPhase::boxes;
 
@@ -76,7 +75,7 @@ class KeptBoxes final : public BoxBroadPhase {
   void findPairs() override {}
 };
 
-class KeptArrays final : public SimdBroadPhase {
+class StoredArrays final : public SimdBroadPhase {
  public:
   using SimdBroadPhase::arrays;
 
@@ -85,7 +84,7 @@ class KeptArrays final : public SimdBroadPhase {
 };
 
 TEST(BoxBroadPhase, KeepsTheBoxesOfTheInitialPoseAndOfEachFrame) {
-  KeptBoxes algorithm;
+  StoredBoxes algorithm;
   ExecutionContext execution(1, Isa::scalar);
   const std::vector<Aabb> first = inputs::uniform(20, 0, 1);
   algorithm.initialize({}, {0, first}, execution);
@@ -96,7 +95,7 @@ TEST(BoxBroadPhase, KeepsTheBoxesOfTheInitialPoseAndOfEachFrame) {
 }
 
 TEST(SimdBroadPhase, KeepsTheBoxesOfTheInitialPoseAndOfEachFrame) {
-  KeptArrays algorithm;
+  StoredArrays algorithm;
   ExecutionContext execution(1, Isa::scalar);
   const std::vector<Aabb> first = inputs::uniform(21, 0, 1);
   algorithm.initialize({}, {0, first}, execution);

@@ -1,5 +1,5 @@
-// What makes times comparable: the answer is the algorithm's own, complete when the search returns,
-// and the same however it is run.
+// Requirements for comparable times: the answer is the algorithm's own, complete when the search
+// returns, and the same in every configuration.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace broadmark::tests {
 namespace {
 
-/// Moves every box to where nothing was, in place.
+/// Overwrites all boxes in place by unrelated boxes.
 void scramble(std::vector<Aabb>& boxes) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const auto x = static_cast<float>(i % 3);
@@ -18,7 +18,7 @@ void scramble(std::vector<Aabb>& boxes) {
   }
 }
 
-/// Pairs; or pairs that began, and those that ended.
+/// The pairs; or the pairs that began, and the pairs that ended.
 std::vector<std::vector<Pair>> answerOf(const BroadPhase& algorithm, AnswerKind kind) {
   if (kind == AnswerKind::pairs) return {sorted(algorithm.overlaps())};
   return {sorted(algorithm.events().began), sorted(algorithm.events().ended)};
@@ -26,25 +26,26 @@ std::vector<std::vector<Pair>> answerOf(const BroadPhase& algorithm, AnswerKind 
 
 class HonestClocks : public testing::TestWithParam<Algorithm> {};
 
-// Who reads the caller's boxes after updateObjects, or works when asked for the answer, fails here.
+// Fails if an algorithm reads the caller's boxes after updateObjects, or computes in overlaps().
 TEST_P(HonestClocks, AnswerDoesNotDependOnBoxesAfterwards) {
   const auto frames = framesOf({"assorted", inputs::assorted}, 500, 4);
   const SceneInfo scene = sceneOf(frames);
-  for (const Configuration& way : everyConfiguration(GetParam())) {
-    SCOPED_TRACE(describe(GetParam(), way));
-    TestRun run(GetParam(), way);
+  for (const Configuration& config : allConfigurations(GetParam())) {
+    SCOPED_TRACE(describe(GetParam(), config));
+    TestRun test_run(GetParam(), config);
     try {
-      run.start(scene, frames[0]);
-      for (std::size_t i = 1; i < frames.size(); ++i) run.step(frames[i]);
-      const std::vector<std::vector<Pair>> undisturbed = answerOf(run.broadPhase(), way.answer);
+      test_run.start(scene, frames[0]);
+      for (std::size_t i = 1; i < frames.size(); ++i) test_run.step(frames[i]);
+      const std::vector<std::vector<Pair>> undisturbed =
+          answerOf(test_run.broadPhase(), config.answer);
       ASSERT_FALSE(undisturbed.front().empty());
 
       std::vector<Aabb> boxes = frames[0];
-      run.start(scene, boxes);
+      test_run.start(scene, boxes);
       scramble(boxes);
       std::vector<std::uint32_t> all(boxes.size());
       std::iota(all.begin(), all.end(), 0U);
-      BroadPhase& algorithm = run.broadPhase();
+      BroadPhase& algorithm = test_run.broadPhase();
       for (std::uint32_t i = 1; i < frames.size(); ++i) {
         boxes = frames[i];
         algorithm.updateObjects({i, boxes, all});
@@ -54,7 +55,7 @@ TEST_P(HonestClocks, AnswerDoesNotDependOnBoxesAfterwards) {
         algorithm.searchOverlaps();
         scramble(boxes);
       }
-      EXPECT_EQ(answerOf(algorithm, way.answer), undisturbed);
+      EXPECT_EQ(answerOf(algorithm, config.answer), undisturbed);
     } catch (const UnsupportedError& error) {
       GTEST_SKIP() << error.what();
     }
@@ -65,14 +66,14 @@ TEST_P(HonestClocks, SamePairsHoweverRun) {
   const auto frames = framesOf({"clustered", inputs::clustered}, 777, 4);
   const SceneInfo scene = sceneOf(frames);
   std::vector<std::vector<Pair>> expected;
-  for (const Configuration& way : everyConfiguration(GetParam())) {
-    SCOPED_TRACE(describe(GetParam(), way));
-    TestRun run(GetParam(), way);
+  for (const Configuration& config : allConfigurations(GetParam())) {
+    SCOPED_TRACE(describe(GetParam(), config));
+    TestRun test_run(GetParam(), config);
     try {
-      run.start(scene, frames[0]);
+      test_run.start(scene, frames[0]);
       std::vector<std::vector<Pair>> answers;
       for (std::size_t i = 1; i < frames.size(); ++i)
-        answers.push_back(sorted(run.step(frames[i])));
+        answers.push_back(sorted(test_run.step(frames[i])));
       if (expected.empty()) expected = answers;
       EXPECT_EQ(answers, expected);
     } catch (const UnsupportedError& error) {
@@ -86,22 +87,22 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, HonestClocks, testing::ValuesIn(pairFinders
 
 TEST(SelfChecks, NoneFindsNothing) {
   const auto frames = framesOf({"identical", inputs::identical}, 10, 2);
-  TestRun run(algorithmOf("none"));
-  run.start(frames[0]);
-  EXPECT_EQ(pairCount(run.step(frames[1])), 0U);
+  TestRun test_run(algorithmOf("none"));
+  test_run.start(frames[0]);
+  EXPECT_EQ(pairCount(test_run.step(frames[1])), 0U);
 }
 
 TEST(SelfChecks, TimeValidatorTakesItsTime) {
   const auto frames = framesOf({"identical", inputs::identical}, 10, 2);
-  TestRun run(algorithmOf("time-validator"), {}, {{"phase_us", "2000"}});
-  run.start(frames[0]).step(frames[1]);
+  TestRun test_run(algorithmOf("time-validator"), {}, {{"phase_us", "2000"}});
+  test_run.start(frames[0]).step(frames[1]);
   std::int64_t sum = 0;
   for (const Phase phase : {Phase::update_objects, Phase::clean_cache, Phase::update_structures,
                             Phase::search_overlaps}) {
-    EXPECT_GE(run.times()[phase], 2'000'000) << kPhases.nameOf(phase);
-    sum += run.times()[phase];
+    EXPECT_GE(test_run.times()[phase], 2'000'000) << kPhases.nameOf(phase);
+    sum += test_run.times()[phase];
   }
-  EXPECT_GE(run.times()[Phase::total], sum);
+  EXPECT_GE(test_run.times()[Phase::total], sum);
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ std::uint64_t structuralWork(const BroadPhase& broad_phase) {
 template <class Inspect>
 void replay(const std::string& id, int threads, const ParameterValues& parameters,
             const Frames& frames, Inspect inspect, AnswerKind answer = AnswerKind::pairs) {
-  const Configuration configuration = {bestIsa(), threads, answer};
-  SCOPED_TRACE(describe(algorithmOf(id), configuration));
-  TestRun run(algorithmOf(id), configuration, parameters);
+  const Configuration config = {bestIsa(), threads, answer};
+  SCOPED_TRACE(describe(algorithmOf(id), config));
+  TestRun run(algorithmOf(id), config, parameters);
   run.start(sceneOf(frames), frames[0]);
   ASSERT_EQ(run.broadPhase().validate(), "") << "in the initial pose";
   for (std::size_t i = 1; i < frames.size(); ++i) {

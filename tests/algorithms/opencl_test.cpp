@@ -1,6 +1,6 @@
-// What algorithms on a compute device promise beyond the right pairs: both ways to divide work,
-// buffers that grow, transfers within the total, bounded threads, several instances at once, a
-// reason where there is no device. Runs on the device that is there, PoCL included.
+// Algorithms on a compute device, beyond the right pairs: both work divisions, buffers that grow,
+// transfers within the total, bounded threads, several instances at once, a reason if there is no
+// device. Runs on any available device, PoCL included.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,14 +26,14 @@ std::vector<Algorithm> allOnDevice() {
   return all;
 }
 
-/// Two threads: a device that is a processor is then divided, if it has more.
+/// Two threads: a CPU device with more threads is then partitioned.
 const Configuration kTwoThreads = {Isa::scalar, 2};
 
 /// Whether the answers of all frames are right.
-testing::AssertionResult findsAll(TestRun& run, const std::vector<std::vector<Aabb>>& frames) {
-  run.start(sceneOf(frames), frames[0]);
+testing::AssertionResult findsAll(TestRun& test_run, const std::vector<std::vector<Aabb>>& frames) {
+  test_run.start(sceneOf(frames), frames[0]);
   for (std::uint32_t i = 1; i < frames.size(); ++i) {
-    auto right = isRight(run.step(frames[i]), rightPairs(frames[i]), {i, frames[i]});
+    auto right = isRight(test_run.step(frames[i]), rightPairs(frames[i]), {i, frames[i]});
     if (!right) return right << " in frame " << i;
   }
   return testing::AssertionSuccess();
@@ -47,15 +47,15 @@ class OnDevice : public testing::TestWithParam<Algorithm> {
 };
 
 TEST_P(OnDevice, TwentyThousandBodiesAreRight) {
-  TestRun run(GetParam(), kTwoThreads);
-  EXPECT_TRUE(findsAll(run, framesOf({"uniform", inputs::uniform}, 20'000, 3)));
-  EXPECT_GT(pairCount(run.broadPhase().overlaps()), 1000U);
+  TestRun test_run(GetParam(), kTwoThreads);
+  EXPECT_TRUE(findsAll(test_run, framesOf({"uniform", inputs::uniform}, 20'000, 3)));
+  EXPECT_GT(pairCount(test_run.broadPhase().overlaps()), 1000U);
 }
 
 TEST_P(OnDevice, OneThreadFindsThemToo) {
-  TestRun run(GetParam());
+  TestRun test_run(GetParam());
   for (const inputs::Input& input : inputs::kAll) {
-    ASSERT_TRUE(findsAll(run, framesOf(input, 257, 3))) << input.name;
+    ASSERT_TRUE(findsAll(test_run, framesOf(input, 257, 3))) << input.name;
   }
 }
 
@@ -64,34 +64,35 @@ TEST_P(OnDevice, PairBuffersGrow) {
   std::vector<std::vector<Aabb>> frames = framesOf({"uniform", inputs::uniform}, 2000, 2);
   frames.push_back(inputs::identical(2000, 0, 0));
   frames.push_back(frames[1]);
-  TestRun run(GetParam(), kTwoThreads);
-  EXPECT_TRUE(findsAll(run, frames));
+  TestRun test_run(GetParam(), kTwoThreads);
+  EXPECT_TRUE(findsAll(test_run, frames));
 }
 
 TEST_P(OnDevice, TransfersAreWithinTheTotal) {
   const auto frames = framesOf({"uniform", inputs::uniform}, 2000, 4);
-  TestRun run(GetParam(), kTwoThreads);
-  run.start(sceneOf(frames), frames[0]);
+  TestRun test_run(GetParam(), kTwoThreads);
+  test_run.start(sceneOf(frames), frames[0]);
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    run.step(frames[i]);
-    EXPECT_GT(run.times()[Phase::upload], 0);
-    EXPECT_GT(run.times()[Phase::download], 0);
-    EXPECT_LE(run.times()[Phase::upload] + run.times()[Phase::download], run.times()[Phase::total]);
+    test_run.step(frames[i]);
+    EXPECT_GT(test_run.times()[Phase::upload], 0);
+    EXPECT_GT(test_run.times()[Phase::download], 0);
+    EXPECT_LE(test_run.times()[Phase::upload] + test_run.times()[Phase::download],
+              test_run.times()[Phase::total]);
   }
 }
 
 TEST_P(OnDevice, TellsOnceHowLongItsKernelsTookToBuild) {
   const auto frames = framesOf({"uniform", inputs::uniform}, 100, 2);
-  TestRun run(GetParam(), kTwoThreads);
-  run.start(frames[0]).step(frames[1]);
+  TestRun test_run(GetParam(), kTwoThreads);
+  test_run.start(frames[0]).step(frames[1]);
   Counters setup;
-  run.broadPhase().visitSetup(
+  test_run.broadPhase().visitSetup(
       [&](std::string_view name, std::uint64_t count) { setup.emplace(name, count); });
   EXPECT_GT(setup["kernel_build_ns"], 0U);
-  EXPECT_EQ(countersOf(run.broadPhase()).count("kernel_build_ns"), 0U);
+  EXPECT_EQ(countersOf(test_run.broadPhase()).count("kernel_build_ns"), 0U);
 }
 
-// Bullet's grids share global kernels: each must run with its own, made for its own context.
+// Bullet's grids share global kernels: each must use kernels of its own context.
 TEST_P(OnDevice, InstancesThatTakeTurnsAreRight) {
   const auto some = framesOf({"clustered", inputs::clustered}, 300, 5);
   const auto others = framesOf({"uniform", inputs::uniform}, 700, 5);
@@ -105,32 +106,32 @@ TEST_P(OnDevice, InstancesThatTakeTurnsAreRight) {
       EXPECT_TRUE(isRight(b.step(others[i]), rightPairs(others[i]), {i, others[i]}));
     }
   }
-  // When the other is gone, kernels and all.
+  // After the other instance and its kernels have been destroyed.
   EXPECT_TRUE(isRight(a.step(some[4]), rightPairs(some[4]), {4, some[4]}));
 }
 
 TEST_P(OnDevice, AnUnknownDeviceIsUnsupported) {
   const auto frames = framesOf({"uniform", inputs::uniform}, 10, 1);
-  CaseRun run(makeCase(GetParam(), Isa::scalar, 1, "no such device", {}));
-  EXPECT_FALSE(run.start(sceneOf(frames), {0, frames[0]}));
-  EXPECT_EQ(run.status(), Status::unsupported);
-  EXPECT_THAT(run.reason(), HasSubstr("no such device"));
+  CaseRun case_run(makeCase(GetParam(), Isa::scalar, 1, "no such device", {}));
+  EXPECT_FALSE(case_run.start(sceneOf(frames), {0, frames[0]}));
+  EXPECT_EQ(case_run.status(), Status::unsupported);
+  EXPECT_THAT(case_run.reason(), HasSubstr("no such device"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, OnDevice, testing::ValuesIn(allOnDevice()),
                          [](const auto& tested) { return testName(tested.param); });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OnDevice);
 
-/// Our own kernels, on either kind of device.
+/// The project's own kernels, on either kind of device.
 class OwnKernels : public OnDevice {};
 
 TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
-  for (const char* way : {"cpu", "gpu"}) {
-    TestRun run(GetParam(), kTwoThreads, {{"work_division", way}});
+  for (const char* work_division : {"cpu", "gpu"}) {
+    TestRun test_run(GetParam(), kTwoThreads, {{"work_division", work_division}});
     for (const inputs::Input& input : inputs::kAll) {
       for (const std::size_t n : {2, 127, 128, 129, 513, 1000}) {
-        ASSERT_TRUE(findsAll(run, framesOf(input, n, 3)))
-            << "on " << input.name << ", n = " << n << ", way " << way;
+        ASSERT_TRUE(findsAll(test_run, framesOf(input, n, 3)))
+            << "on " << input.name << ", n = " << n << ", work_division " << work_division;
       }
     }
   }
@@ -138,9 +139,9 @@ TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
 
 TEST_P(OwnKernels, DrawCellsOrNodesRoundEveryBodyOrTheAxis) {
   const auto frames = framesOf({"assorted", inputs::assorted}, 500, 3);
-  TestRun run(GetParam(), kTwoThreads);
-  ASSERT_TRUE(findsAll(run, frames));
-  const RecordedDrawing drawn = drawingOf(run.broadPhase());
+  TestRun test_run(GetParam(), kTwoThreads);
+  ASSERT_TRUE(findsAll(test_run, frames));
+  const RecordedDrawing drawn = drawingOf(test_run.broadPhase());
   if (drawn.lines().size() == 1 && drawn.boxes().empty()) return;  // the axis of a sweep
   EXPECT_GT(drawn.boxes().size(), 10U);
   for (const Aabb& body : frames[2]) {
@@ -149,13 +150,13 @@ TEST_P(OwnKernels, DrawCellsOrNodesRoundEveryBodyOrTheAxis) {
   }
 }
 
-// Little enough for an interpreter that watches each access to memory.
+// Little enough for an interpreter that checks all memory accesses.
 TEST_P(OwnKernels, FewBodiesAreRight) {
-  for (const char* way : {"cpu", "gpu"}) {
-    TestRun run(GetParam(), kTwoThreads, {{"work_division", way}});
+  for (const char* work_division : {"cpu", "gpu"}) {
+    TestRun test_run(GetParam(), kTwoThreads, {{"work_division", work_division}});
     for (const std::size_t n : {2, 65, 130}) {
-      ASSERT_TRUE(findsAll(run, framesOf({"few", inputs::uniform}, n, 2)))
-          << "n = " << n << ", way " << way;
+      ASSERT_TRUE(findsAll(test_run, framesOf({"few", inputs::uniform}, n, 2)))
+          << "n = " << n << ", work_division " << work_division;
     }
   }
 }

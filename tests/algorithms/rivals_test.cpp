@@ -1,4 +1,4 @@
-// Other people's libraries as algorithms, on what their own arithmetic and bookkeeping could lose.
+// Third-party libraries as algorithms, on inputs critical for their arithmetic and bookkeeping.
 
 #include <gtest/gtest.h>
 
@@ -10,24 +10,24 @@
 namespace broadmark::tests {
 namespace {
 
-/// Those of the libraries that this build has.
+/// The algorithms of third-party libraries in this build.
 std::vector<Algorithm> rivals() {
-  std::vector<Algorithm> all = pairFinders();
-  std::erase_if(all, [](const Algorithm& algorithm) {
-    const auto of = [&](const char* library) { return algorithm.family.starts_with(library); };
-    return !of("Embree") && !of("Boost") && !of("FCL") && !of("ODE");
+  std::vector<Algorithm> algorithms = pairFinders();
+  std::erase_if(algorithms, [](const Algorithm& algorithm) {
+    const auto is_from = [&](const char* library) { return algorithm.family.starts_with(library); };
+    return !is_from("Embree") && !is_from("Boost") && !is_from("FCL") && !is_from("ODE");
   });
-  return all;
+  return algorithms;
 }
 
-/// Runs every way over the frames.
+/// Checks all configurations on the frames.
 void check(const Algorithm& algorithm, const std::vector<std::vector<Aabb>>& frames) {
-  for (const Configuration& way : configurations(algorithm)) {
-    SCOPED_TRACE(describe(algorithm, way));
-    TestRun run(algorithm, way);
-    run.start(sceneOf(frames), frames[0]);
+  for (const Configuration& config : configurations(algorithm)) {
+    SCOPED_TRACE(describe(algorithm, config));
+    TestRun test_run(algorithm, config);
+    test_run.start(sceneOf(frames), frames[0]);
     for (std::uint32_t i = 1; i < frames.size(); ++i) {
-      ASSERT_TRUE(isRight(run.step(frames[i]), rightPairs(frames[i]), {i, frames[i]}))
+      ASSERT_TRUE(isRight(test_run.step(frames[i]), rightPairs(frames[i]), {i, frames[i]}))
           << "in frame " << i;
     }
   }
@@ -39,7 +39,7 @@ TEST_P(Rivals, CopeWithTheLimitsOfFloats) {
   check(GetParam(), framesOf({"limits", inputs::limits}, 200, 4));
 }
 
-// Sizes and places around the smallest normal number.
+// Sizes and positions around the smallest normal number.
 TEST_P(Rivals, TellSmallestNumbersApart) {
   constexpr float kStep = std::numeric_limits<float>::min() / 8;
   constexpr std::size_t kMany = 500;
@@ -51,7 +51,7 @@ TEST_P(Rivals, TellSmallestNumbersApart) {
   check(GetParam(), {boxes, boxes});
 }
 
-// A body that moves by less than a double sees beside its distance from the origin.
+// A body moves by less than the precision of a double at its distance from the origin.
 TEST_P(Rivals, SeeSmallMovesFarAway) {
   constexpr float kFar = 1e20F;
   const auto boxes = [](float x) {
@@ -61,7 +61,7 @@ TEST_P(Rivals, SeeSmallMovesFarAway) {
   check(GetParam(), {boxes(1e-3F), boxes(0), boxes(1e-3F), boxes(0)});
 }
 
-// Bookkeeping that goes wrong in time, as when a library forgets which leaf is whose.
+// Bookkeeping errors that accumulate, such as wrong leaves of bodies.
 TEST_P(Rivals, FollowTheFewThatMoveForLong) {
   constexpr std::size_t kMany = 500;
   std::vector<std::vector<Aabb>> frames = {inputs::clustered(kMany, 0, 1)};
@@ -75,7 +75,7 @@ TEST_P(Rivals, FollowTheFewThatMoveForLong) {
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, Rivals, testing::ValuesIn(rivals()),
                          [](const auto& tested) { return testName(tested.param); });
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Rivals);  // all of them left out
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Rivals);  // builds without these libraries
 
 }  // namespace
 }  // namespace broadmark::tests

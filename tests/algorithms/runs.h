@@ -1,4 +1,4 @@
-// Running any listed algorithm over given boxes, in every way it can be run.
+// Runs listed algorithms on given boxes, in all configurations.
 #pragma once
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@
 
 namespace broadmark {
 
-/// How GoogleTest shows an algorithm.
+/// Prints an algorithm in GoogleTest.
 inline void PrintTo(const Algorithm& algorithm, std::ostream* out) { *out << algorithm.id; }
 
 }  // namespace broadmark
@@ -35,7 +35,6 @@ namespace broadmark::tests {
 
 using inputs::sceneOf;
 
-/// One way to run an algorithm.
 struct Configuration {
   Isa isa = Isa::scalar;
   int threads = 1;
@@ -43,7 +42,7 @@ struct Configuration {
   ParameterValues parameters = {};
 };
 
-/// All instruction sets of this processor if the algorithm heeds them, and these teams if it is
+/// All instruction sets of this processor if the algorithm is vectorised, and these teams if it is
 /// parallel. A compute device divides the work by itself.
 inline std::vector<Configuration> configurations(const Algorithm& algorithm,
                                                  std::vector<int> teams = {1, 2, 5}) {
@@ -58,21 +57,21 @@ inline std::vector<Configuration> configurations(const Algorithm& algorithm,
   return all;
 }
 
-/// Those for events, with the widest instruction set. Other teams than for pairs: more threads than
-/// there are cores are slow, and five and three divide hardly any number of bodies.
+/// The configurations for events, with the widest instruction set. Other teams than for pairs: more
+/// threads than cores are slow, and few numbers of bodies are divisible by five or three.
 inline std::vector<Configuration> eventConfigurations(const Algorithm& algorithm) {
-  std::vector<Configuration> ways = configurations(algorithm, {1, 3});
-  const Isa widest = std::ranges::max_element(ways, {}, &Configuration::isa)->isa;
-  std::erase_if(ways, [&](const Configuration& way) { return way.isa != widest; });
-  for (Configuration& way : ways) way.answer = AnswerKind::events;
-  return ways;
+  std::vector<Configuration> selected = configurations(algorithm, {1, 3});
+  const Isa widest = std::ranges::max_element(selected, {}, &Configuration::isa)->isa;
+  std::erase_if(selected, [&](const Configuration& c) { return c.isa != widest; });
+  for (Configuration& config : selected) config.answer = AnswerKind::events;
+  return selected;
 }
 
-/// All of both, and with the algorithm's rare parameters.
-inline std::vector<Configuration> everyConfiguration(const Algorithm& algorithm) {
+/// All configurations for pairs and events, also with the algorithm's rare parameters.
+inline std::vector<Configuration> allConfigurations(const Algorithm& algorithm) {
   std::vector<Configuration> all = configurations(algorithm);
-  const std::vector<Configuration> of_events = eventConfigurations(algorithm);
-  all.insert(all.end(), of_events.begin(), of_events.end());
+  const std::vector<Configuration> for_events = eventConfigurations(algorithm);
+  all.insert(all.end(), for_events.begin(), for_events.end());
   if (algorithm.traits.rare_parameters.empty()) return all;
   for (std::size_t i = all.size(); i-- > 0;) {
     all.push_back(all[i]);
@@ -81,14 +80,14 @@ inline std::vector<Configuration> everyConfiguration(const Algorithm& algorithm)
   return all;
 }
 
-inline Case caseOf(const Algorithm& algorithm, const Configuration& way,
+inline Case caseOf(const Algorithm& algorithm, const Configuration& config,
                    ParameterValues parameters = {}) {
-  parameters.insert(way.parameters.begin(), way.parameters.end());
-  return makeCase(algorithm, way.isa, way.threads, "", parameters, way.answer);
+  parameters.insert(config.parameters.begin(), config.parameters.end());
+  return makeCase(algorithm, config.isa, config.threads, "", parameters, config.answer);
 }
 
-inline std::string describe(const Algorithm& algorithm, const Configuration& way) {
-  return caseName(caseOf(algorithm, way));
+inline std::string describe(const Algorithm& algorithm, const Configuration& config) {
+  return caseName(caseOf(algorithm, config));
 }
 
 /// The listed algorithms that report pairs.
@@ -98,13 +97,13 @@ inline std::vector<Algorithm> pairFinders() {
   return all;
 }
 
-/// The listed algorithm of that id, which must be there.
+/// The listed algorithm with this id; it must exist.
 inline Algorithm algorithmOf(const std::string& id) {
   const std::vector<Algorithm> all = builtinAlgorithms();
   return *std::ranges::find(all, id, &Algorithm::id);
 }
 
-/// "sap-simd" as a name that GoogleTest accepts.
+/// The id as a name that GoogleTest accepts, such as "sap_simd".
 inline std::string testName(const Algorithm& algorithm) {
   std::string name = algorithm.id;
   std::ranges::replace_if(
@@ -122,15 +121,15 @@ inline std::vector<std::vector<Aabb>> framesOf(const inputs::Input& input, std::
   return frames;
 }
 
-/// The answer as one ascending list.
+/// The answer as an ascending list.
 inline std::vector<Pair> sorted(PairRuns runs) {
   std::vector<Pair> pairs;
-  for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+  for (const PairRun pair_run : runs) pairs.insert(pairs.end(), pair_run.begin(), pair_run.end());
   std::ranges::sort(pairs);
   return pairs;
 }
 
-/// The right pairs, ascending: by definition where that is quick enough.
+/// The right pairs, ascending; by brute force if that is quick enough.
 inline std::vector<Pair> rightPairs(const std::vector<Aabb>& boxes) {
   return boxes.size() <= 1000 ? bruteForcePairs(boxes) : sweptPairs(boxes);
 }
@@ -145,78 +144,78 @@ inline Counters countersOf(const BroadPhase& algorithm) {
   return counters;
 }
 
-/// What the algorithm draws now, and tells of so many bodies.
+/// The drawing of the algorithm's structure, with tests of up to `bodies` bodies.
 inline RecordedDrawing drawingOf(const BroadPhase& algorithm, std::size_t bodies = 0) {
   RecordedDrawing drawing(bodies);
   algorithm.drawStructure(drawing);
   return drawing;
 }
 
-/// How many bodies all cells together hold, as far as they tell.
+/// Sum of the reported populations of all cells.
 inline std::uint64_t populationOf(const RecordedDrawing& drawing) {
   std::uint64_t sum = 0;
   for (const RecordedDrawing::Box& box : drawing.boxes()) sum += box.population;
   return sum;
 }
 
-/// An algorithm on boxes in memory, without limits or checks. Throws what it throws.
+/// Runs an algorithm on boxes in memory, without limits or checks. Propagates its exceptions.
 class TestRun {
  public:
-  explicit TestRun(const Algorithm& algorithm, const Configuration& way = {},
+  explicit TestRun(const Algorithm& algorithm, const Configuration& config = {},
                    const ParameterValues& parameters = {})
-      : run_(caseOf(algorithm, way, parameters)),
-        host_(std::make_unique<InProcessExecutor>(run_)),
+      : test_case_(caseOf(algorithm, config, parameters)),
+        host_(std::make_unique<InProcessExecutor>(test_case_)),
         changed_bodies_(std::make_unique<ChangeDetector>()) {}
 
-  /// Begins a pass. Throws UnsupportedError.
+  /// Starts a pass. Throws UnsupportedError.
   TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
     index_ = 0;
     host_->start(scene, changed_bodies_->complete({0, first}));
-    followed_.clear();
-    if (run_.answer == AnswerKind::events) follow(first.size());
+    accumulator_.clear();
+    if (test_case_.answer == AnswerKind::events) accumulateEvents(first.size());
     return *this;
   }
   TestRun& start(const std::vector<Aabb>& first) { return start(sceneOf({first}), first); }
 
-  /// Runs the four phases on the next frame. Returns the pairs, those that events have led to; then
-  /// also throws std::logic_error for one that cannot be.
+  /// Runs the four phases on the next frame. Returns the pairs; of events, those accumulated so
+  /// far, and then throws std::logic_error for an impossible event.
   PairRuns step(const std::vector<Aabb>& boxes) {
     times_ = host_->step(changed_bodies_->complete({++index_, boxes})).times;
-    if (run_.answer == AnswerKind::pairs) return broadPhase().overlaps();
-    follow(boxes.size());
-    return followed_.pairs();
+    if (test_case_.answer == AnswerKind::pairs) return broadPhase().overlaps();
+    accumulateEvents(boxes.size());
+    return accumulator_.pairs();
   }
 
-  /// The instance: between start() and the next one.
+  /// The instance; valid from start() to the next start().
   BroadPhase& broadPhase() { return host_->instance(); }
-  /// Of the last frame.
+  /// The times of the last frame.
   [[nodiscard]] const FrameTimes& times() const { return times_; }
-  [[nodiscard]] float margin() const { return makeInstance(run_)->margin(); }
+  [[nodiscard]] float margin() const { return makeInstance(test_case_)->margin(); }
 
  private:
-  void follow(std::size_t bodies) {
-    followed_.apply(host_->events(), bodies);
-    for (const Pair pair : followed_.impossible()) {
+  void accumulateEvents(std::size_t bodies) {
+    accumulator_.apply(host_->events(), bodies);
+    for (const Pair pair : accumulator_.impossible()) {
       throw std::logic_error(fmt::format("frame {}: {}-{} cannot be: {} began, {} ended", index_,
                                          pair.a, pair.b, pairCount(host_->events().began),
                                          pairCount(host_->events().ended)));
     }
   }
 
-  Case run_;
+  Case test_case_;
   std::unique_ptr<InProcessExecutor> host_;
   std::unique_ptr<ChangeDetector> changed_bodies_;
-  EventAccumulator followed_;
+  EventAccumulator accumulator_;
   FrameTimes times_;
   std::uint32_t index_ = 0;
 };
 
-/// Whether an answer has all the right pairs, and no false ones.
+/// Whether an answer has all right pairs, and no false pairs.
 inline testing::AssertionResult isRight(PairRuns answer, const std::vector<Pair>& right,
                                         const Frame& frame, float margin = 0,
                                         const CollisionFilter& filter = {}) {
   const PairRun right_run = right;
-  // Much quicker, and enough where no extra pair is allowed.
+  // The digest is much quicker, and sufficient if no extra pairs are allowed.
   if (margin == 0 && digest(answer) == digest({&right_run, 1})) return testing::AssertionSuccess();
   const FrameDifference difference = findDifference(answer, right, frame, margin, filter);
   if (!difference.isMismatch()) return testing::AssertionSuccess();

@@ -23,12 +23,12 @@ TrimmedRange trimmedRangeBySorting(const std::vector<Aabb>& sample, int axis) {
   }
   std::ranges::sort(lows);
   std::ranges::sort(highs, std::greater());
-  const auto at = static_cast<std::size_t>(0.05 * static_cast<double>(sample.size() - 1));
-  const double margin = (highs[at] - lows[at]) / 4;
-  return {std::max(lows[0], lows[at] - margin), std::min(highs[0], highs[at] + margin)};
+  const auto rank = static_cast<std::size_t>(0.05 * static_cast<double>(sample.size() - 1));
+  const double margin = (highs[rank] - lows[rank]) / 4;
+  return {std::max(lows[0], lows[rank] - margin), std::min(highs[0], highs[rank] + margin)};
 }
 
-// Sorted and reversed samples, too, in which every 16th value is no random sample.
+// Also sorted and reversed samples, in which every 16th value is no random sample.
 TEST(Sample, FindsTheTrimmedRange) {
   for (const inputs::Input& input : inputs::kAll) {
     for (const std::size_t size : {1U, 2U, 15U, 16U, 17U, 100U, 256U, 1000U, 2047U, 2048U}) {

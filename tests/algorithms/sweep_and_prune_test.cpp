@@ -1,4 +1,4 @@
-// Parts of brute force and sweep and prune by themselves.
+// Components of brute force and sweep and prune.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST(RadixSort, SortsStablyWhateverTheTeam) {
   }
 }
 
-// A kernel may load whole vectors, but must report nothing outside of what it was given.
+// A kernel may load whole vectors, but must report only pairs in its ranges.
 TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
   constexpr std::size_t kCount = 70;
   const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
@@ -65,8 +65,8 @@ TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
         }
         PairBuffer found;
         overlapKernels(isa).test_tile(arrays, rows, columns, found);
-        const PairRun run = found.run();
-        EXPECT_EQ(sorted({&run, 1}), expected)
+        const PairRun pair_run = found.run();
+        EXPECT_EQ(sorted({&pair_run, 1}), expected)
             << name << " rows " << rows.begin << "–" << rows.end << " columns " << columns.begin
             << "–" << columns.end;
       }
@@ -74,8 +74,8 @@ TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
   }
 }
 
-// Windows of any length from any row on: rows are swept several at once, beyond their common part
-// one by one, and no pair may fall between or be reported by both.
+// Windows of any length from any row on: several rows are swept at once, then one by one beyond
+// their common part; no pair may be missed or reported by both.
 TEST(OverlapKernels, SweepReportsEveryWindowOnce) {
   constexpr std::size_t kCount = 90;
   BoxArrays arrays;
@@ -102,24 +102,24 @@ TEST(OverlapKernels, SweepReportsEveryWindowOnce) {
       if (!isaSupported(isa)) continue;
       PairBuffer found;
       overlapKernels(isa).sweep(arrays, ends.data(), bodies.data(), rows, found);
-      const PairRun run = found.run();
-      EXPECT_EQ(sorted({&run, 1}), expected) << name << " rows from " << rows.begin;
+      const PairRun pair_run = found.run();
+      EXPECT_EQ(sorted({&pair_run, 1}), expected) << name << " rows from " << rows.begin;
     }
   }
 }
 
-// Values no recording holds, whose sums and differences overflow: only comparisons are right.
+// Values that no recording contains: their sums and differences overflow, only comparisons work.
 TEST(BruteForceAndSweep, SurviveTheLimitsOfFloats) {
   const auto frames = framesOf({"limits", inputs::limits}, 300, 4);
   const SceneInfo scene = sceneOf(frames);
   for (const Algorithm& algorithm : pairFinders()) {
     if (algorithm.family != "BF" && algorithm.family != "SAP") continue;
-    for (const Configuration& way : configurations(algorithm)) {
-      TestRun run(algorithm, way);
-      run.start(scene, frames[0]);
+    for (const Configuration& config : configurations(algorithm)) {
+      TestRun test_run(algorithm, config);
+      test_run.start(scene, frames[0]);
       for (std::size_t i = 1; i < frames.size(); ++i) {
-        EXPECT_EQ(sorted(run.step(frames[i])), bruteForcePairs(frames[i]))
-            << describe(algorithm, way);
+        EXPECT_EQ(sorted(test_run.step(frames[i])), bruteForcePairs(frames[i]))
+            << describe(algorithm, config);
       }
     }
   }
@@ -137,9 +137,9 @@ TEST(SweepAndPrune, SweepsAlongTheAxisOfLargestVariance) {
     }
     for (const Algorithm& algorithm : pairFinders()) {
       if (algorithm.family != "SAP") continue;
-      TestRun run(algorithm);
-      run.start(sceneOf(frames), frames[0]).step(frames[1]);
-      const RecordedDrawing drawn = drawingOf(run.broadPhase());
+      TestRun test_run(algorithm);
+      test_run.start(sceneOf(frames), frames[0]).step(frames[1]);
+      const RecordedDrawing drawn = drawingOf(test_run.broadPhase());
       ASSERT_EQ(drawn.lines().size(), 1U);
       for (std::size_t other = 0; other < 3; ++other) {
         const float length = drawn.lines()[0].to[other] - drawn.lines()[0].from[other];

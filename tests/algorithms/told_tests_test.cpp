@@ -1,5 +1,5 @@
-// What algorithms tell of the tests that each body took part in. Nobody reports a pair that it did
-// not test, and each test is one of two bodies.
+// Reported numbers of tests per body. An algorithm tests every pair that it reports, and each test
+// counts for two bodies.
 
 #include <gtest/gtest.h>
 
@@ -16,41 +16,41 @@ std::uint64_t sumOf(const std::vector<std::uint32_t>& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-/// What is told of a frame in which all bodies have moved: `tide` draws no tests in others.
-std::vector<std::uint32_t> toldOf(const Algorithm& algorithm, const std::vector<Aabb>& boxes,
-                                  const ParameterValues& parameters = {},
-                                  Counters* counters = nullptr) {
-  TestRun run(algorithm, {bestIsa(), 1}, parameters);
-  run.start(inputs::uniform(boxes.size(), 2, 1));
-  run.step(boxes);
-  if (counters != nullptr) *counters = countersOf(run.broadPhase());
-  return drawingOf(run.broadPhase(), boxes.size()).tests();
+/// The counts of a frame in which all bodies have moved: `tide` reports no tests in other frames.
+std::vector<std::uint32_t> testCountsOf(const Algorithm& algorithm, const std::vector<Aabb>& boxes,
+                                        const ParameterValues& parameters = {},
+                                        Counters* counters = nullptr) {
+  TestRun test_run(algorithm, {bestIsa(), 1}, parameters);
+  test_run.start(inputs::uniform(boxes.size(), 2, 1));
+  test_run.step(boxes);
+  if (counters != nullptr) *counters = countersOf(test_run.broadPhase());
+  return drawingOf(test_run.broadPhase(), boxes.size()).tests();
 }
 
-std::vector<std::uint32_t> toldOf(const std::string& id, const std::vector<Aabb>& boxes,
-                                  const ParameterValues& parameters = {},
-                                  Counters* counters = nullptr) {
-  return toldOf(algorithmOf(id), boxes, parameters, counters);
+std::vector<std::uint32_t> testCountsOf(const std::string& id, const std::vector<Aabb>& boxes,
+                                        const ParameterValues& parameters = {},
+                                        Counters* counters = nullptr) {
+  return testCountsOf(algorithmOf(id), boxes, parameters, counters);
 }
 
 class ToldTests : public testing::TestWithParam<Algorithm> {
  protected:
-  /// Some algorithms tell nothing.
   void SetUp() override {
     const auto boxes = inputs::uniform(100, 1, 1);
-    if (toldOf(GetParam(), boxes).empty()) GTEST_SKIP() << "tells nothing";
+    if (testCountsOf(GetParam(), boxes).empty()) GTEST_SKIP() << "reports no tests";
   }
 
-  /// In every way to run it, once it stands at the last frame.
+  /// Checks all configurations, in the last frame.
   void check(const SceneInfo& scene, const std::vector<std::vector<Aabb>>& frames) {
-    for (const Configuration& way : configurations(GetParam(), {1, 3})) {
-      SCOPED_TRACE(describe(GetParam(), way));
-      TestRun run(GetParam(), way);
-      run.start(scene, frames.front());
+    for (const Configuration& config : configurations(GetParam(), {1, 3})) {
+      SCOPED_TRACE(describe(GetParam(), config));
+      TestRun test_run(GetParam(), config);
+      test_run.start(scene, frames.front());
       PairRuns answer;
-      for (std::size_t i = 1; i < frames.size(); ++i) answer = run.step(frames[i]);
-      const std::vector<std::uint32_t> tests = drawingOf(run.broadPhase(), scene.objects).tests();
-      if (tests.empty() && pairCount(answer) == 0) continue;  // there was nobody to test
+      for (std::size_t i = 1; i < frames.size(); ++i) answer = test_run.step(frames[i]);
+      const std::vector<std::uint32_t> tests =
+          drawingOf(test_run.broadPhase(), scene.objects).tests();
+      if (tests.empty() && pairCount(answer) == 0) continue;  // nothing to test
       ASSERT_EQ(tests.size(), scene.objects);
       EXPECT_EQ(sumOf(tests) % 2, 0U);
       EXPECT_GE(sumOf(tests), 2 * pairCount(answer));
@@ -89,15 +89,15 @@ TEST_P(ToldTests, AreOfTheSceneWhereBodiesComeAndGo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Listed, ToldTests, testing::ValuesIn(pairFinders()),
-                         [](const auto& each) { return testName(each.param); });
+                         [](const auto& tested) { return testName(tested.param); });
 
 TEST(ToldTestsOf, BruteForceAreOfEveryOtherBody) {
   const std::vector<std::uint32_t> all_others(100, 99);
   const std::vector<Aabb> boxes = inputs::uniform(100, 1, 1);
-  for (const char* id : {"bf", "bf-simd"}) EXPECT_EQ(toldOf(id, boxes), all_others) << id;
-  // So it is in a single cell.
-  EXPECT_EQ(toldOf("grid-bf", boxes, {{"objects_per_cell", "1000"}}), all_others);
-  EXPECT_EQ(toldOf("grid2d-bf", boxes, {{"objects_per_cell", "1000"}}), all_others);
+  for (const char* id : {"bf", "bf-simd"}) EXPECT_EQ(testCountsOf(id, boxes), all_others) << id;
+  // As in a single cell.
+  EXPECT_EQ(testCountsOf("grid-bf", boxes, {{"objects_per_cell", "1000"}}), all_others);
+  EXPECT_EQ(testCountsOf("grid2d-bf", boxes, {{"objects_per_cell", "1000"}}), all_others);
 }
 
 TEST(ToldTestsOf, ASweepAreOfWhatOverlapsOnItsAxis) {
@@ -113,19 +113,19 @@ TEST(ToldTestsOf, ASweepAreOfWhatOverlapsOnItsAxis) {
       expected[a] += a != b && overlap ? 1 : 0;
     }
   }
-  EXPECT_EQ(toldOf("sap", boxes), expected);
-  EXPECT_EQ(toldOf("sap-simd", boxes), expected);
+  EXPECT_EQ(testCountsOf("sap", boxes), expected);
+  EXPECT_EQ(testCountsOf("sap-simd", boxes), expected);
 }
 
 TEST(ToldTestsOf, ColumnsAreThoseThatTheFrameCounted) {
   Counters counters;
-  const auto tests = toldOf("columns", inputs::clustered(5000, 1, 1), {}, &counters);
+  const auto tests = testCountsOf("columns", inputs::clustered(5000, 1, 1), {}, &counters);
   EXPECT_EQ(sumOf(tests), 2 * counters.at("tests"));
 }
 
 TEST(ToldTestsOf, GridsAndTideAreKnown) {
   for (const char* id : {"grid-sap", "tide"}) {
-    EXPECT_FALSE(toldOf(id, inputs::uniform(100, 1, 1)).empty()) << id;
+    EXPECT_FALSE(testCountsOf(id, inputs::uniform(100, 1, 1)).empty()) << id;
   }
 }
 

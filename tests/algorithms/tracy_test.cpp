@@ -17,30 +17,30 @@ class CheckedRun {
  public:
   CheckedRun(const std::string& id, int threads, int objects_per_cell, const Aabb& world,
              const std::vector<Aabb>& first)
-      : run_(algorithmOf(id), {Isa::scalar, threads},
-             {{"objects_per_cell", std::to_string(objects_per_cell)}}),
+      : pairs_(algorithmOf(id), {Isa::scalar, threads},
+               {{"objects_per_cell", std::to_string(objects_per_cell)}}),
         events_(algorithmOf(id), {Isa::scalar, threads, AnswerKind::events},
                 {{"objects_per_cell", std::to_string(objects_per_cell)}}) {
     SceneInfo scene;
     scene.objects = static_cast<std::uint32_t>(first.size());
     scene.world = world;
-    run_.start(scene, first);
+    pairs_.start(scene, first);
     events_.start(scene, first);
   }
 
   void step(const std::vector<Aabb>& boxes) {
     ++index_;
     const std::vector<Pair> right = sweptPairs(boxes);
-    EXPECT_EQ(sorted(run_.step(boxes)), right) << "in frame " << index_;
+    EXPECT_EQ(sorted(pairs_.step(boxes)), right) << "in frame " << index_;
     EXPECT_EQ(sorted(events_.step(boxes)), right) << "from events, in frame " << index_;
-    EXPECT_EQ(run_.broadPhase().validate(), "") << "in frame " << index_;
+    EXPECT_EQ(pairs_.broadPhase().validate(), "") << "in frame " << index_;
   }
 
-  [[nodiscard]] Counters counters() { return countersOf(run_.broadPhase()); }
-  [[nodiscard]] const BroadPhase& broadPhase() { return run_.broadPhase(); }
+  [[nodiscard]] Counters counters() { return countersOf(pairs_.broadPhase()); }
+  [[nodiscard]] const BroadPhase& broadPhase() { return pairs_.broadPhase(); }
 
  private:
-  TestRun run_;
+  TestRun pairs_;
   TestRun events_;
   std::uint32_t index_ = 0;
 };
@@ -60,23 +60,23 @@ inputs::Vec3 randomOffset(inputs::Random& random, float max) {
 
 TEST(Tracy, DoesNothingWhenNothingMoves) {
   const std::vector<Aabb> boxes = inputs::assorted(2000, 0, 5);
-  CheckedRun run("tracy", 1, 20, cubeFrom(0, 30), boxes);
-  run.step(boxes);
-  for (const auto& [name, count] : run.counters()) EXPECT_EQ(count, 0U) << name;
+  CheckedRun tracy("tracy", 1, 20, cubeFrom(0, 30), boxes);
+  tracy.step(boxes);
+  for (const auto& [name, count] : tracy.counters()) EXPECT_EQ(count, 0U) << name;
 
   std::vector<Aabb> with_move = boxes;
   moveBy(with_move[77], {0.1F, 0, 0});
-  run.step(with_move);
-  EXPECT_GE(run.counters()["moves"], 1U);
-  EXPECT_LE(run.counters()["moves"], 8U);
-  EXPECT_GT(run.counters()["swaps"], 0U);
-  EXPECT_LT(run.counters()["swaps"], 200U);
+  tracy.step(with_move);
+  EXPECT_GE(tracy.counters()["moves"], 1U);
+  EXPECT_LE(tracy.counters()["moves"], 8U);
+  EXPECT_GT(tracy.counters()["swaps"], 0U);
+  EXPECT_LT(tracy.counters()["swaps"], 200U);
 }
 
 TEST(Tracy, IsExactOverAThousandFramesOfSmallMoves) {
   for (const char* id : {"tracy", "tracy-mt"}) {
     std::vector<Aabb> boxes = inputs::clustered(400, 0, 9);
-    CheckedRun run(id, id == std::string("tracy") ? 1 : 3, 25, cubeFrom(-6, 6), boxes);
+    CheckedRun tracy(id, id == std::string("tracy") ? 1 : 3, 25, cubeFrom(-6, 6), boxes);
     Counters sum;
     for (std::uint32_t frame = 1; frame <= 1000; ++frame) {
       inputs::Random random(4, frame);
@@ -86,9 +86,9 @@ TEST(Tracy, IsExactOverAThousandFramesOfSmallMoves) {
         for (float& x : offset) x = std::round(x * 8) / 8;
         moveBy(boxes[i], offset);
       }
-      run.step(boxes);
+      tracy.step(boxes);
       if (HasFailure()) return;
-      for (const auto& [name, count] : run.counters()) sum[name] += count;
+      for (const auto& [name, count] : tracy.counters()) sum[name] += count;
     }
     for (const char* name : {"moves", "swaps", "cell changes", "pairs begun", "pairs ended"}) {
       EXPECT_GT(sum[name], 1000U) << name;
@@ -120,13 +120,13 @@ TEST(Tracy, IsExactWithCellsOfAFewBodies) {
     for (const inputs::Input& input : inputs::kAll) {
       SCOPED_TRACE(input.name);
       const auto frames = framesOf(input, kCount, kSteps);
-      CheckedRun run("tracy-mt", 2, objects_per_cell, sceneOf(frames).world, frames[0]);
-      for (std::uint32_t i = 1; i < kSteps; ++i) run.step(frames[i]);
+      CheckedRun tracy("tracy-mt", 2, objects_per_cell, sceneOf(frames).world, frames[0]);
+      for (std::uint32_t i = 1; i < kSteps; ++i) tracy.step(frames[i]);
       unrelated.push_back(frames[1]);
       if (HasFailure()) return;
     }
-    CheckedRun run("tracy", 1, objects_per_cell, cubeFrom(-10, 20), unrelated[0]);
-    for (const std::vector<Aabb>& boxes : unrelated) run.step(boxes);
+    CheckedRun tracy("tracy", 1, objects_per_cell, cubeFrom(-10, 20), unrelated[0]);
+    for (const std::vector<Aabb>& boxes : unrelated) tracy.step(boxes);
   }
 }
 
@@ -138,7 +138,7 @@ TEST(Tracy, FindsFewMoversAmongMany) {
   for (const int threads : {1, 2, 3}) {
     SCOPED_TRACE(threads);
     std::vector<Aabb> boxes = inputs::assorted(kCount, 0, 5);
-    CheckedRun run(threads > 1 ? "tracy-mt" : "tracy", threads, 4, cubeFrom(0, kEdge), boxes);
+    CheckedRun tracy(threads > 1 ? "tracy-mt" : "tracy", threads, 4, cubeFrom(0, kEdge), boxes);
     inputs::Random random(3, 1);
     const auto random_body = [&] {
       return static_cast<std::size_t>(random.uniform(0, kCount - 0.5F));
@@ -155,7 +155,7 @@ TEST(Tracy, FindsFewMoversAmongMany) {
           moveBy(box, randomOffset(random, choice < 0.4F ? kEdge : 0.3F));
         }
       }
-      run.step(boxes);
+      tracy.step(boxes);
       if (HasFailure()) return;
     }
   }
@@ -167,13 +167,13 @@ TEST(Tracy, KeepsPairsThatChangeCells) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) moveBy(boxes[i], {static_cast<float>(i) * 0.02F, 0, 0});
   }
-  CheckedRun run("tracy", 1, 1, cubeFrom(0, 4), boxes);
+  CheckedRun tracy("tracy", 1, 1, cubeFrom(0, 4), boxes);
   std::uint64_t cell_changes = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const float step = frame < 50 ? 0.09F : -0.09F;
     for (Aabb& box : boxes) moveBy(box, {step, step / 2, -step / 3});
-    run.step(boxes);
-    const Counters counters = run.counters();
+    tracy.step(boxes);
+    const Counters counters = tracy.counters();
     cell_changes += counters.at("cell changes");
     EXPECT_EQ(counters.at("pairs begun") + counters.at("pairs ended"), 0U);
   }
@@ -184,29 +184,29 @@ TEST(Tracy, KeepsPairsThatChangeCells) {
 // and swapped back within a frame.
 TEST(Tracy, ReportsNothingThatIsUndoneWithinAFrame) {
   std::vector<Aabb> boxes = {cubeFrom(0, 1), cubeFrom(1.5F, 2.5F)};
-  CheckedRun run("tracy", 1, 200, cubeFrom(0, 100), boxes);
+  CheckedRun tracy("tracy", 1, 200, cubeFrom(0, 100), boxes);
   for (int frame = 0; frame < 40; ++frame) {
     for (Aabb& box : boxes) moveBy(box, {2, 2, 2});
-    run.step(boxes);
-    EXPECT_EQ(run.counters()["pairs begun"], 0U);
+    tracy.step(boxes);
+    EXPECT_EQ(tracy.counters()["pairs begun"], 0U);
   }
 }
 
 TEST(Tracy, ReinsertsBodiesThatMoveFarWithinACell) {
   std::vector<Aabb> boxes = inputs::uniform(600, 0, 6);
-  CheckedRun run("tracy", 1, 1'000'000, cubeFrom(0, 18), boxes);
+  CheckedRun tracy("tracy", 1, 1'000'000, cubeFrom(0, 18), boxes);
   const std::vector<Aabb> elsewhere = inputs::uniform(600, 1, 6);
   std::copy_n(elsewhere.begin(), 300, boxes.begin());
-  run.step(boxes);
-  EXPECT_GT(run.counters()["jumps"], 200U);
-  run.step(inputs::teleporting(600, 1, 1));
-  run.step(inputs::identical(600, 2, 1));
-  run.step(boxes);
+  tracy.step(boxes);
+  EXPECT_GT(tracy.counters()["jumps"], 200U);
+  tracy.step(inputs::teleporting(600, 1, 1));
+  tracy.step(inputs::identical(600, 2, 1));
+  tracy.step(boxes);
 }
 
 TEST(Tracy, IsExactOutsideOfTheWorld) {
   std::vector<Aabb> boxes = inputs::clustered(500, 0, 3);
-  CheckedRun run("tracy-mt", 2, 20, cubeFrom(-4, 4), boxes);
+  CheckedRun tracy("tracy-mt", 2, 20, cubeFrom(-4, 4), boxes);
   for (std::uint32_t frame = 1; frame <= 60; ++frame) {
     inputs::Random random(5, frame);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -214,17 +214,17 @@ TEST(Tracy, IsExactOutsideOfTheWorld) {
       moveBy(boxes[i], randomOffset(random, 0.2F));
       if (i % 3 != 0) moveBy(boxes[i], {0.5F, -0.5F, i % 2 == 0 ? 0.5F : 0.0F});
     }
-    run.step(boxes);
+    tracy.step(boxes);
   }
-  run.step(inputs::scaled(boxes, 1e30F));
-  run.step(boxes);
+  tracy.step(inputs::scaled(boxes, 1e30F));
+  tracy.step(boxes);
 }
 
 // The world is a point or a plane.
 TEST(Tracy, IsExactInADegenerateWorld) {
   for (const Aabb& world : {cubeFrom(0, 0), cubeFrom(3, 3), Aabb{{0, 0, 0, 0}, {10, 10, 0, 0}}}) {
-    CheckedRun run("tracy", 1, 5, world, inputs::uniform(300, 0, 1));
-    for (std::uint32_t frame = 1; frame < 4; ++frame) run.step(inputs::uniform(300, frame, 1));
+    CheckedRun tracy("tracy", 1, 5, world, inputs::uniform(300, 0, 1));
+    for (std::uint32_t frame = 1; frame < 4; ++frame) tracy.step(inputs::uniform(300, frame, 1));
   }
 }
 
@@ -233,8 +233,8 @@ TEST(Tracy, SurvivesTheLimitsOfFloats) {
   const std::vector<Aabb> first = inputs::limits(300, 0, 1);
   for (const Aabb& world : {cubeFrom(-1, 1), cubeFrom(-std::numeric_limits<float>::max(),
                                                       std::numeric_limits<float>::max())}) {
-    CheckedRun run("tracy", 1, 5, world, first);
-    for (std::uint32_t frame = 1; frame < 5; ++frame) run.step(inputs::limits(300, frame, 1));
+    CheckedRun tracy("tracy", 1, 5, world, first);
+    for (std::uint32_t frame = 1; frame < 5; ++frame) tracy.step(inputs::limits(300, frame, 1));
   }
 }
 
@@ -249,24 +249,24 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
     large[i].max[(i + 1) % 3] = 30;
   }
   for (const char* id : {"tracy", "tracy-mt"}) {
-    CheckedRun run(id, id == std::string("tracy") ? 1 : 3, 1, cubeFrom(0, 21.5F), small);
-    run.step(large);
-    EXPECT_EQ(run.counters()["grid rebuilds"], 1U);
-    run.step(large);
-    EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
+    CheckedRun tracy(id, id == std::string("tracy") ? 1 : 3, 1, cubeFrom(0, 21.5F), small);
+    tracy.step(large);
+    EXPECT_EQ(tracy.counters()["grid rebuilds"], 1U);
+    tracy.step(large);
+    EXPECT_EQ(tracy.counters()["grid rebuilds"], 0U);
     // The grid is refined step by step, up to the initial grid.
     std::uint64_t rebuilds = 0;
     std::vector<Aabb> boxes = small;
     for (int frame = 0; frame < 12; ++frame) {
       moveBy(boxes[0], {0.01F, 0, 0});
-      run.step(boxes);
-      rebuilds += run.counters()["grid rebuilds"];
+      tracy.step(boxes);
+      rebuilds += tracy.counters()["grid rebuilds"];
     }
     EXPECT_GE(rebuilds, 2U);
-    EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
+    EXPECT_EQ(tracy.counters()["grid rebuilds"], 0U);
     CheckedRun fresh(id, 1, 1, cubeFrom(0, 21.5F), small);
     fresh.step(boxes);
-    run.step(boxes);
+    tracy.step(boxes);
   }
 }
 
@@ -274,18 +274,18 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
 TEST(Tracy, KeepsTheGridForAFewLargeBodies) {
   std::vector<Aabb> boxes = inputs::uniform(2000, 0, 4);
   for (std::size_t i = 0; i < 5; ++i) boxes[i] = cubeFrom(-1, 30);
-  CheckedRun run("tracy", 1, 10, cubeFrom(0, 28), boxes);
+  CheckedRun tracy("tracy", 1, 10, cubeFrom(0, 28), boxes);
   for (Aabb& box : boxes) moveBy(box, {0.1F, 0.2F, 0});
-  run.step(boxes);
-  EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
+  tracy.step(boxes);
+  EXPECT_EQ(tracy.counters()["grid rebuilds"], 0U);
 }
 
 TEST(Tracy, DrawsOccupiedCellsAndTheirSegments) {
   std::vector<Aabb> boxes(100, cubeFrom(0.1F, 0.2F));
   for (std::size_t i = 0; i < 50; ++i) boxes[i] = cubeFrom(3.5F, 3.6F);
-  CheckedRun run("tracy", 1, 1, cubeFrom(0, 4), boxes);
+  CheckedRun tracy("tracy", 1, 1, cubeFrom(0, 4), boxes);
   std::map<int, std::vector<Aabb>> levels;
-  const RecordedDrawing drawing = drawingOf(run.broadPhase());
+  const RecordedDrawing drawing = drawingOf(tracy.broadPhase());
   for (const RecordedDrawing::Box& drawn : drawing.boxes()) {
     levels[drawn.level].push_back(drawn.box);
     EXPECT_EQ(drawn.population, drawn.level == 0 ? 50U : 0U);

@@ -1,4 +1,4 @@
-// Meshes that assimp reads: whose vertices are whose, how animations move, and damaged files.
+// Meshes read by assimp: the vertices of each face, animations, and damaged files.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using AssimpImports = Imports;
 
 std::filesystem::path data(const std::string& name) { return places::source("tests/data/" + name); }
 
-/// Two triangles and a square beside them; vertices 1 and 4 are at one place.
+/// Two triangles and a square beside them; vertices 1 and 4 have the same position.
 constexpr const char* kPly =
     "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
     "z\n"
@@ -33,7 +33,7 @@ TEST_F(AssimpImports, VerticesAreThoseOfThePlyFile) {
   EXPECT_EQ(pairsIn(*vertices, 0), (PairCounts{1, 1}));
   const auto triangles = read("a.ply", kPly);
   EXPECT_EQ(triangles->scene().objects, 3U);
-  // All have vertex 0.
+  // All triangles share vertex 0.
   EXPECT_EQ(pairsIn(*triangles, 0), (PairCounts{3, 0}));
 }
 
@@ -49,7 +49,7 @@ TEST_F(AssimpImports, CornersOfStlAreJoined) {
 }
 
 TEST_F(AssimpImports, AnimatedNodesMoveTheirMeshes) {
-  // From x = 0 to x = 4 within a second.
+  // The node moves from x = 0 to x = 4 within a second.
   const auto frames = importFrom(data("moving.gltf"), {{"frame_rate", "2"}});
   ASSERT_EQ(frames->scene().frames, 2U);
   EXPECT_EQ(boxesOf(*frames, 0)[0], boxOf({0, 0, 0}, {1, 1, 0}));
@@ -59,7 +59,7 @@ TEST_F(AssimpImports, AnimatedNodesMoveTheirMeshes) {
 }
 
 TEST_F(AssimpImports, AnimatedBonesPullAtVertices) {
-  // Only the second vertex hangs on the bone that moves.
+  // Only the second vertex is attached to the moving bone.
   const auto frames =
       importFrom(data("skinned.gltf"), {{"frame_rate", "1"}, {"elements", "vertices"}});
   EXPECT_THAT(boxesOf(*frames, 1),
@@ -68,7 +68,7 @@ TEST_F(AssimpImports, AnimatedBonesPullAtVertices) {
 }
 
 TEST_F(AssimpImports, PairsOfAnExcerptOfRodTwist) {
-  // Counted by other means; see docs/import.md for those of the whole meshes.
+  // Reference counts from an independent tool; docs/import.md has those of the whole meshes.
   struct Expected {
     const char* elements;
     std::uint32_t bodies;

@@ -1,4 +1,4 @@
-// A batch as the inspector runs it: planned, started, watched, cancelled, with nothing printed.
+// The inspector's batches: planning, starting, observing and cancelling, without output.
 
 #include "bake/bake_plan.h"
 
@@ -30,7 +30,7 @@ class BatchOfBakes : public testing::Test {
   }
   ~BatchOfBakes() override { fs::remove_all(directory_); }
 
-  /// Bakes to the end. Returns how many recordings ended.
+  /// Bakes to the end. Returns the number of finished recordings.
   std::size_t finish(BakePlan plan) {
     std::size_t ended = 0;
     bakeAll(
@@ -52,8 +52,8 @@ class BatchOfBakes : public testing::Test {
 
   fs::path directory_;
   BakeOptions options_;
-  BatchState state_;           ///< the last one
-  bool is_cancelled_ = false;  ///< as soon as there is a frame
+  BatchState state_;           ///< the last reported state
+  bool is_cancelled_ = false;  ///< whether to cancel at the first frame
 };
 
 TEST_F(BatchOfBakes, PlansBakesAndKeeps) {

@@ -1,4 +1,4 @@
-// Which algorithms and cases selectors mean.
+// The algorithms and cases that selectors match.
 
 #include "request/cases.h"
 
@@ -32,7 +32,7 @@ std::vector<Case> casesOf(const CaseOptions& options, const ParameterValues& par
 
 Names namesOf(const std::vector<Case>& cases) {
   Names names;
-  for (const Case& run : cases) names.push_back(caseName(run));
+  for (const Case& test_case : cases) names.push_back(caseName(test_case));
   return names;
 }
 
@@ -75,12 +75,12 @@ TEST(SelectCases, VaryWhatAnAlgorithmHeeds) {
                             .isas = {Isa::scalar, Isa::sse2}};
   const std::vector<Case> cases = casesOf(options);
   ASSERT_THAT(cases, SizeIs(1 + 2 + 2 + 4));
-  for (const Case& run : cases) {
-    if (!run.algorithm.traits.parallel) {
-      EXPECT_EQ(run.threads, 1);
+  for (const Case& test_case : cases) {
+    if (!test_case.algorithm.traits.parallel) {
+      EXPECT_EQ(test_case.threads, 1);
     }
-    if (!run.algorithm.traits.vectorised) {
-      EXPECT_EQ(run.isa, Isa::scalar);
+    if (!test_case.algorithm.traits.vectorised) {
+      EXPECT_EQ(test_case.isa, Isa::scalar);
     }
   }
   const Names names = namesOf(cases);
@@ -96,10 +96,11 @@ TEST(SelectCases, TakeTheParametersThatTheyHave) {
   const auto cases = casesOf({.algorithms = {"kd", "sap"}, .threads = {1}, .isas = {Isa::scalar}},
                              {{"objects_per_leaf", "7"}, {"density", "0.5"}});
   ASSERT_THAT(cases, SizeIs(2));
-  for (const Case& run : cases) {
-    const ParameterValues expected =
-        run.algorithm.id == "kd" ? ParameterValues{{"objects_per_leaf", "7"}} : ParameterValues{};
-    EXPECT_EQ(run.parameters, expected);
+  for (const Case& test_case : cases) {
+    const ParameterValues expected = test_case.algorithm.id == "kd"
+                                         ? ParameterValues{{"objects_per_leaf", "7"}}
+                                         : ParameterValues{};
+    EXPECT_EQ(test_case.parameters, expected);
   }
 }
 
@@ -150,7 +151,7 @@ TEST(RequireKnownParameters, NamesTheUnknownOne) {
               AllOf(HasSubstr("--param"), HasSubstr("'densty'"), HasSubstr("'density'")));
 }
 
-/// Whether algorithms of this id have been left out of this build.
+/// Whether this build excludes the algorithms with this id.
 bool isLeftOut(std::string_view id) {
   return (id == "cgal" && !parts::kCgal.included) ||
          (id.starts_with("b3-") && !parts::kOpenCl.included);

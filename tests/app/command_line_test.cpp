@@ -1,4 +1,4 @@
-// What is understood on a command line, and what is refused. Nothing is run.
+// Accepted and rejected command lines. Nothing is run.
 
 #include "commands/command_line.h"
 
@@ -18,14 +18,14 @@ using testing::IsEmpty;
 using testing::Not;
 using Arguments = std::vector<std::string>;
 
-/// The options of a headless session on FreeFall with more arguments.
+/// The options of a headless session on FreeFall with these further arguments.
 SessionOptions session(const Arguments& more = {}) {
   Arguments arguments = {"--headless", "freefall"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return parseSession(arguments);
 }
 
-/// The complaint about a command line must hold all of these words, on one line.
+/// The error message for a command line must be one line that contains all of these words.
 void expectRefused(const Arguments& arguments, const Arguments& words) {
   SCOPED_TRACE(testing::PrintToString(arguments));
   const std::string message = inputErrorOf([&] { parseCommandLine(arguments); });

@@ -1,4 +1,4 @@
-// Two runs case by case: what is faster, slower, a regression, or not comparable.
+// Two runs, compared case by case: faster, slower, a regression, or not comparable.
 
 #include "compare/comparison.h"
 
@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A result with frames that take about `ns`, in so many repetitions.
+/// A result with this number of repetitions and frames that take about `ns`.
 CaseResult resultOf(const std::string& id, std::int64_t ns, int repetitions = 3,
                     std::size_t frames = 200) {
   CaseResult result;
@@ -25,7 +25,7 @@ CaseResult resultOf(const std::string& id, std::int64_t ns, int repetitions = 3,
     Repetition& repetition = result.repetitions.emplace_back();
     for (std::size_t i = 0; i < frames; ++i) {
       FrameTimes& times = repetition.frames.emplace_back();
-      // A little noise: without any there is no interval.
+      // A little noise, because a confidence interval requires variance.
       times[Phase::total] = ns + static_cast<std::int64_t>((i * 7 + 3U * r) % 11) * ns / 1000;
     }
   }
@@ -42,7 +42,7 @@ NamedResults resultsOf(std::vector<CaseResult> cases) {
           {.environments = {{}}, .options = {}, .cases = std::move(cases), .complete = true}};
 }
 
-/// With three baselines that agree: so it is known that runs do not differ.
+/// Compares with three equal baselines, so that the run-to-run variance is known to be 0.
 Comparison comparisonOf(const NamedResults& before, const NamedResults& after,
                         const ComparisonOptions& options = {}) {
   const std::vector<NamedResults> baselines(3, before);
@@ -141,7 +141,7 @@ TEST(Compare, OtherRecordingsAreNotComparable) {
   EXPECT_FALSE(comparisonOf(before, resultsOf({other})).comparable());
 }
 
-// A baked recording and a live one differ by their seed, and so by their id.
+// A baked recording and a live scene differ in their seeds, and therefore in their ids.
 TEST(Compare, TheSameRecordingIsKnownByItsHash) {
   CaseResult live = resultOf("FreeFall/Cubes/N10/F200/s7/sap", 1'000'000);
   live.recording.scene = {"FreeFall", "Cubes", 10, 200};
@@ -208,17 +208,17 @@ TEST(Compare, WhatIsPartialIsTold) {
 }
 
 TEST(Compare, WhatMayHaveDisturbedARunIsToldOnce) {
-  NamedResults run = resultsOf({resultOf("a", 1'000'000), resultOf("b", 1'000'000)});
-  for (CaseResult& result : run.results.cases) result.conditions.warnings = {"busy"};
-  EXPECT_THAT(comparisonOf(resultsOf({resultOf("a", 1)}), run).notes,
+  NamedResults named = resultsOf({resultOf("a", 1'000'000), resultOf("b", 1'000'000)});
+  for (CaseResult& result : named.results.cases) result.conditions.warnings = {"busy"};
+  EXPECT_THAT(comparisonOf(resultsOf({resultOf("a", 1)}), named).notes,
               ElementsAre("name.json: busy"));
 }
 
 TEST(Compare, AcrossThreadsWithinARun) {
-  const NamedResults run =
+  const NamedResults results =
       resultsOf({resultOf("kd-mt/avx2/t1", 2'000'000), resultOf("kd-mt/avx2/t2", 1'000'000),
                  resultOf("sap-mt/t1", 1'000'000)});
-  const Comparison comparison = comparisonOf(run, run, {.by = "threads"});
+  const Comparison comparison = comparisonOf(results, results, {.by = "threads"});
   ASSERT_EQ(comparison.cases.size(), 1U);
   EXPECT_EQ(comparison.cases[0].id, "kd-mt/avx2/t2");
   EXPECT_EQ(comparison.cases[0].baseline, "kd-mt/avx2/t1");
@@ -226,13 +226,13 @@ TEST(Compare, AcrossThreadsWithinARun) {
 }
 
 TEST(Compare, AcrossAlgorithmsAndParameters) {
-  const NamedResults run = resultsOf(
+  const NamedResults results = resultsOf(
       {resultOf("kd", 1'000'000), resultOf("kd/margin=1", 2'000'000), resultOf("sap", 3'000'000)});
-  EXPECT_EQ(comparisonOf(run, run, {.by = "algorithm"}).cases.size(), 2U);
-  const Comparison by_margin = comparisonOf(run, run, {.by = "margin"});
+  EXPECT_EQ(comparisonOf(results, results, {.by = "algorithm"}).cases.size(), 2U);
+  const Comparison by_margin = comparisonOf(results, results, {.by = "margin"});
   ASSERT_EQ(by_margin.cases.size(), 1U);
   EXPECT_EQ(by_margin.cases[0].id, "kd/margin=1");
-  EXPECT_THAT(inputErrorOf([&] { comparisonOf(run, run, {.by = "margn"}); }),
+  EXPECT_THAT(inputErrorOf([&] { comparisonOf(results, results, {.by = "margn"}); }),
               HasSubstr("did you mean 'margin'"));
 }
 

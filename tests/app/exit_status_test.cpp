@@ -1,4 +1,4 @@
-// How commands end.
+// The exit statuses of commands.
 
 #include "support/exit_status.h"
 

@@ -1,4 +1,4 @@
-// Files of other programs, and how tests read them.
+// Files of other programs, and helpers that read them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace broadmark::tests {
 
-/// The frames of what is named, read as these options say.
+/// The frames of the source `name`, read with these options.
 inline std::unique_ptr<IndexedFrames> importFrom(const std::filesystem::path& name,
                                                  const ParameterValues& options = {}) {
   ReadingOptions reading;
@@ -28,7 +28,7 @@ inline std::unique_ptr<IndexedFrames> importFrom(const std::filesystem::path& na
   return importedSource({name.string()}, *import, reading).imported;
 }
 
-/// A box by its corners.
+/// A box from its corners.
 inline Aabb boxOf(std::array<float, 3> min, std::array<float, 3> max) {
   return {{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}};
 }
@@ -39,7 +39,7 @@ inline std::vector<Aabb> boxesOf(IndexedFrames& frames, std::uint32_t index) {
   return {frame.boxes.begin(), frame.boxes.end()};
 }
 
-/// How many pairs overlap in a frame, and how many of those are wanted.
+/// The number of overlapping pairs in a frame, and of those that pass the filter.
 struct PairCounts {
   std::size_t overlapping = 0;
   std::size_t wanted = 0;
@@ -74,7 +74,7 @@ class Imports : public testing::Test {
                                                     const ParameterValues& options = {}) const {
     return importFrom(write(name, text), options);
   }
-  /// The complaint about a file with this text.
+  /// The error message for a file with this text.
   [[nodiscard]] std::string complaint(const std::string& name, const std::string& text,
                                       const ParameterValues& options = {}) const {
     const auto path = write(name, text);

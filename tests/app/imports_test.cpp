@@ -1,4 +1,4 @@
-// Text files of other programs: what stands in them, and what is wrong with them.
+// Text files of other programs: their contents, and their errors.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -195,7 +195,7 @@ TEST_F(Imports, ElementsOfObj) {
   EXPECT_EQ(boxesOf(*edges, 0)[2], boxOf({0, 0, 0}, {0, 1, 2}));
   EXPECT_TRUE(edges->scene().filter.wanted(0, 4));
   EXPECT_FALSE(edges->scene().filter.wanted(0, 1));
-  // The file's vertices, two of them at one place.
+  // The file's vertices, two of them at the same position.
   const auto vertices = elements("vertices");
   EXPECT_EQ(vertices->scene().objects, 6U);
   EXPECT_TRUE(vertices->scene().filter.wantsAll());

@@ -1,4 +1,4 @@
-// From options to cases: all of them, filtered, divided among machines, for the inspector.
+// From options to cases: all cases, filtered cases, shards, and plans for the inspector.
 
 #include "run/plan.h"
 
@@ -21,7 +21,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using Names = std::vector<std::string>;
 
-/// A run on two scenes of two sizes each.
+/// A run on two scenes in two sizes each.
 RunRequest request() {
   RunRequest options;
   options.sources = {"freefall", "brownian"};
@@ -31,7 +31,7 @@ RunRequest request() {
   return options;
 }
 
-/// For the inspector, on one scene.
+/// A request of the inspector, on one scene.
 RunRequest inspection() {
   RunRequest inspecting = request();
   inspecting.sources = {"freefall"};
@@ -163,9 +163,9 @@ TEST(Plan, DeviceAndAnswerAreThoseOfEveryCase) {
   asked.cases.device = "0";
   asked.cases.answer = AnswerKind::events;
   for (const PlanEntry& entry : planOf(asked).entries) {
-    for (const Case& run : entry.cases) {
-      EXPECT_EQ(run.device, "0");
-      EXPECT_EQ(run.answer, AnswerKind::events);
+    for (const Case& test_case : entry.cases) {
+      EXPECT_EQ(test_case.device, "0");
+      EXPECT_EQ(test_case.answer, AnswerKind::events);
     }
   }
 }

@@ -1,4 +1,4 @@
-// When a case has been repeated often enough, and in which order cases take turns.
+// When to stop repeating a case, and the order of interleaved cases.
 
 #include "request/repetitions.h"
 
@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
-/// A result with one frame in each repetition, which takes so many nanoseconds.
+/// A result with one frame per repetition; `ns`: the time of each.
 CaseResult resultOfFrames(const std::vector<std::int64_t>& ns) {
   CaseResult result;
   for (const std::int64_t time : ns) {

@@ -1,4 +1,4 @@
-// Run requests: what a command line states comes back from the file, and nothing else is taken.
+// Run requests: the file returns the options of the command line; other members are rejected.
 
 #include "command_line/run_requests.h"
 
@@ -28,7 +28,7 @@ class RunRequests : public testing::Test {
     return parseSession(arguments);
   }
 
-  /// The same with these members besides the schema.
+  /// The options of a file with these members and the schema.
   SessionOptions sessionWith(const std::string& members, const Arguments& beside = {}) {
     return sessionOn(R"({"schema": "broadmark-run/1", )" + members + "}", beside);
   }

@@ -1,4 +1,4 @@
-// Files that sessions are opened on, each as small as can be.
+// Minimal files for opening sessions.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace broadmark::tests {
 
-/// A recording of two frames in which two unit boxes touch.
+/// A recording of two frames with two touching unit boxes.
 inline void writeRecording(const std::filesystem::path& path) {
   const SceneInfo scene{.name = "Small",
                         .object_type = "Cubes",
@@ -35,13 +35,13 @@ inline const std::string kSceneParametersText =
     R"({"schema": "broadmark-scene-parameters/1", "scene": "brownian",
         "parameters": {"objects": 5, "frames": 3, "seed": 8}})";
 
-/// Settings of the original Broadmark for a recording.
+/// A settings file of the original Broadmark for a recording.
 inline std::string originalSettingsText(const std::string& recording) {
   return R"({"m_inputScene": ")" + recording +
          R"(", "m_outputLog": "log.json", "m_algorithm": "BF_SSE", "m_numThreads": 2})";
 }
 
-/// The results of a case on a recording, as a run writes them, with this first mismatch (0: none).
+/// The results of a case on a recording, as written by a run; `first_mismatch`: a frame, or 0.
 inline CaseResult resultOn(const std::filesystem::path& recording, const std::string& algorithm,
                            std::uint32_t first_mismatch = 0) {
   const auto opened = openRecordingFile(recording);

@@ -1,4 +1,4 @@
-// Every kind of source is recognised and opened; others are refused with what would be right.
+// Every kind of source is recognised and opened; errors for others list the valid kinds.
 
 #include "sources/source.h"
 
@@ -178,7 +178,7 @@ TEST_F(Sources, SceneParameters) {
 }
 
 TEST_F(Sources, OriginalSettings) {
-  writeRecording(directory_ / "small.aabbs");  // stated by its name alone
+  writeRecording(directory_ / "small.aabbs");  // the name without a folder
   const PlanEntry entry = entryOf(write("settings.json", originalSettingsText("small.aabbs")));
   ASSERT_TRUE(entry.original);
   EXPECT_EQ(entry.original->output_log, "log.json");

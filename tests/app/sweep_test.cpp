@@ -1,4 +1,4 @@
-// Parameters with several values.
+// Parameter sweeps.
 
 #include "request/sweep.h"
 
@@ -10,7 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// One parameter of each kind that matters here.
+/// One parameter of each kind that sweeps treat differently.
 class Thing final : public Parametrised {
  public:
   void visitParameters(const ParameterVisitor& visit) override {

@@ -1,4 +1,4 @@
-// Tables for people.
+// Human-readable tables.
 
 #include "support/table.h"
 
@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A right result whose frames took these times.
+/// A correct result with these frame times.
 CaseResult timedResult(const std::string& algorithm, const std::vector<std::int64_t>& milliseconds,
                        ParameterValues parameters = {}) {
   CaseResult result;
@@ -30,7 +30,7 @@ CaseResult timedResult(const std::string& algorithm, const std::vector<std::int6
   return result;
 }
 
-/// The lines of the table, each with single spaces.
+/// The lines of the table, with single spaces between columns.
 std::vector<std::string> tableOf(const std::vector<CaseResult>& results) {
   std::vector<std::string> lines;
   std::istringstream text(formatTable(results));
@@ -79,7 +79,7 @@ TEST(Wrapped, BreaksBetweenWordsBelowTheBeginning) {
   std::vector<std::size_t> lengths;
   std::istringstream lines(wrapped(text, 2, 6));
   for (std::string line; std::getline(lines, line);) lengths.push_back(line.size());
-  // Nine words and eight blanks after the two columns that are taken; then after six blanks.
+  // Nine words and eight spaces after the two used columns; then after six spaces of indentation.
   EXPECT_THAT(lengths, ElementsAre(89, 95, 25));
 }
 

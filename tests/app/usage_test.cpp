@@ -1,4 +1,4 @@
-// Completion and manual have every option that help has.
+// Completion and manual list every option of the help.
 
 #include "command_line/usage.h"
 
@@ -30,7 +30,7 @@ std::string printedBy(const std::vector<std::string>& arguments) {
   return text;
 }
 
-/// The names at the beginnings of lines of --help-all, without dashes.
+/// The option names at the beginning of the lines of --help-all, without dashes.
 std::set<std::string> shownOptions() {
   const std::string help = printedBy({"--help-all"});
   const std::regex option(R"((^|\n) +(-h,)?--([a-z][a-z-]*))");
@@ -71,7 +71,7 @@ TEST(Usage, EveryOptionOfHelpIsEverywhere) {
   }
 }
 
-// In the README's commands, of this program alone.
+// Only in the README's commands that call this program.
 TEST(Usage, EveryOptionOfTheReadmeIsThere) {
   const std::string readme = readTextFile(places::source("README.md"));
   const std::set<std::string> names = shownOptions();
@@ -99,7 +99,7 @@ TEST(Usage, OfTheManual) {
   EXPECT_THAT(manual, HasSubstr(".TP\n\\fB\\-\\-json\\fR \\fIFILE\\fR\nresults as JSON"));
 }
 
-/// What bash makes of the last of these words.
+/// Bash's completions of the last of these words.
 std::string completedByBash(const std::filesystem::path& script, const std::string& words) {
   const auto last = std::ranges::count(words, ' ');
   const std::string command = fmt::format(

@@ -1,7 +1,7 @@
 // Measures algorithms against CGAL's box intersection and prints time / time(cgal) beside the
-// targets. CGAL is the same library everywhere, so these ratios carry over from machine to machine.
-// Each algorithm takes turns with `cgal`, frame by frame, on smoothly moving unit cubes. Exit
-// status 1 if a target is missed or an algorithm's pairs are wrong.
+// targets. CGAL is the same library everywhere, so these ratios are comparable between machines.
+// Each algorithm alternates with `cgal`, frame by frame, on smoothly moving unit cubes. Exit status
+// 1 if a target is missed or an algorithm's pairs are wrong.
 //
 //   cgal_ratios [ALGORITHM[:KEY=VALUE]...] [--scene NAME,...] [--objects N] [--rounds R]
 
@@ -32,7 +32,7 @@ using broadmark::inputs::Vec3;
 
 constexpr std::size_t kFrames = 12;
 constexpr std::uint64_t kSeed = 1;
-/// Of a velocity, in units per frame: bodies then go 0.2 a frame in the mean of squares.
+/// Maximum velocity per axis, in units per frame: the root mean square speed is then 0.2.
 constexpr float kSpeed = 0.2F;
 
 using Frames = std::vector<std::vector<Aabb>>;
@@ -44,20 +44,20 @@ std::vector<Aabb> boxesAt(const std::vector<Vec3>& corners) {
   return boxes;
 }
 
-Vec3 randomVector(Random& random, float most) {
-  return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
+Vec3 randomVector(Random& random, float max) {
+  return {random.uniform(-max, max), random.uniform(-max, max), random.uniform(-max, max)};
 }
 
-/// Unit cubes in a closed cube of volume 10 n, every `every`-th of them on its way, straight on and
-/// back from the walls.
-Frames bouncing(std::size_t n, std::size_t every) {
+/// Unit cubes in a closed cube of volume 10 n. Every `stride`-th cube moves in a straight line and
+/// is reflected by the walls.
+Frames bouncing(std::size_t n, std::size_t stride) {
   const float side = inputs::cubeRoot(10.0 * static_cast<double>(n));
   Random random(kSeed, 0);
   std::vector<Vec3> corners(n);
   std::vector<Vec3> velocities(n);
   for (std::size_t i = 0; i < n; ++i) {
     corners[i] = random.inCube(side - 1);
-    if (i % every == 0) velocities[i] = randomVector(random, kSpeed);
+    if (i % stride == 0) velocities[i] = randomVector(random, kSpeed);
   }
   Frames frames = {boxesAt(corners)};
   while (frames.size() < kFrames) {
@@ -77,7 +77,7 @@ Frames bouncing(std::size_t n, std::size_t every) {
 Frames brownian(std::size_t n) { return bouncing(n, 1); }
 Frames mostlyStill(std::size_t n) { return bouncing(n, 20); }
 
-/// Unit cubes in a ball of volume n that moves on as a whole, each jostled about its place.
+/// Unit cubes in a ball of volume n that moves as a whole, each with some random motion.
 Frames clustered(std::size_t n) {
   const std::vector<Aabb> first = inputs::clustered(n, 0, kSeed);
   std::vector<Vec3> corners;
@@ -94,11 +94,11 @@ Frames clustered(std::size_t n) {
   return frames;
 }
 
-/// How long an algorithm may take, in parts of CGAL's time, for kTargetObjects bodies.
+/// Time limits of an algorithm as ratios to CGAL's time, for kTargetObjects bodies.
 struct Target {
   std::string_view algorithm;
   double most = 0;
-  double goal = 0;  ///< better still; 0: none
+  double goal = 0;  ///< stricter than `most`; 0: none
 };
 constexpr std::size_t kTargetObjects = 131'072;
 
@@ -129,14 +129,14 @@ std::vector<Scene> allScenes() {
           {"clustered", clustered, {{"kd", 0.26, 0.13}, {"grid2d-sap", 0.18}}}};
 }
 
-/// An algorithm as asked for: "kd", "cgal:cutoff=100".
+/// An algorithm with parameters, as on the command line: "kd", "cgal:cutoff=100".
 struct Candidate {
   std::string name;
   Algorithm algorithm;
   ParameterValues parameters;
 };
 
-/// Nothing, with a line that says why, if there is no such algorithm here.
+/// Parses the names; skips unknown algorithms with a message.
 std::vector<Candidate> candidates(const std::vector<std::string>& names) {
   std::vector<Candidate> found;
   for (const std::string& name : names) {
@@ -157,7 +157,7 @@ std::vector<Candidate> candidates(const std::vector<std::string>& names) {
   return found;
 }
 
-/// Whether the last frame's answers agree, the candidate's margin granted.
+/// Whether the last frame's answers agree; with a margin, the candidate may report more pairs.
 bool sameAnswer(const Contestant& candidate, const Contestant& cgal) {
   if (candidate.margin > 0) return pairCount(candidate.answer()) >= pairCount(cgal.answer());
   return digest(candidate.answer()) == digest(cgal.answer());
@@ -168,10 +168,10 @@ std::string verdict(double ratio, const Target& target) {
   return ratio <= target.most ? "ok" : "MISSED";
 }
 
-/// Prints one line; false if the target is missed or the answer wrong.
+/// Prints a line of results; false if the target is missed or the answer wrong.
 bool measure(const Candidate& candidate, const Algorithm& cgal, const Frames& frames,
              const Target* target, int rounds) {
-  // Two at a time: with more, each would find less of its memory in the caches.
+  // Only two contestants: with more, each would have less of its memory in the caches.
   Contest contest("Benchmark", frames);
   contest.add("cgal", makeCase(cgal, Isa::scalar, 1, "", {}));
   contest.add("candidate", makeCase(candidate.algorithm, bestIsa(), 2, "", candidate.parameters));
@@ -193,7 +193,7 @@ bool measure(const Candidate& candidate, const Algorithm& cgal, const Frames& fr
 }
 
 struct Options {
-  std::vector<std::string> algorithms;  ///< empty: those with targets
+  std::vector<std::string> algorithms;  ///< empty: all with targets
   std::vector<std::string> scenes;      ///< empty: all
   std::size_t objects = kTargetObjects;
   int rounds = 7;

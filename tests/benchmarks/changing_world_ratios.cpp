@@ -1,15 +1,15 @@
-// What a frame costs in worlds that change. What is compared takes turns, frame by frame, so that
-// ratios mean something. Exit status 1 if a target is missed.
+// Frame times in changing worlds. Contestants alternate frame by frame, so that their ratios are
+// meaningful. Exit status 1 if a target is missed.
 //
 //   changing_world_ratios [PART [ROUNDS]]
 //
-// PART: level    a level of 1,000,000 bodies that stand still, and 100 that move: two families take
-//                at most 100 µs
-//       still    the same and none that moves: one family takes at most 1 µs
-//       traffic  1 % of 128,000 bodies removed and as many added: at most what moving 2 % costs
-//       culling  a level in layers beside the same boxes without any
-//       worlds   256 worlds at one place in one case beside a case each: at most 1.1 times as long,
-//                every algorithm of one thread
+// PART: level    a level of 1,000,000 static and 100 moving bodies: two families take at most
+//                100 µs
+//       still    the same level without moving bodies: one family takes at most 1 µs
+//       traffic  1 % of 128,000 bodies removed and as many added: at most the time of moving 2 %
+//       culling  a level with layers beside the same boxes without layers
+//       worlds   256 worlds at the same position in one case beside a case each: at most 1.1 times
+//                as long, every algorithm of one thread
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ namespace {
 using namespace broadmark;
 using namespace broadmark::benchmarks;
 
-/// Prints the times and the ratio of two entrants, and whether that is at most `target`; 0: any.
+/// Prints the times and the ratio of two entrants; false if it exceeds `target` (0: none).
 bool compare(const std::string& what, const WorldContest::Entrant& a,
              const WorldContest::Entrant& b, double target = 0) {
   std::vector<double> ratios;
@@ -41,14 +41,14 @@ bool compare(const std::string& what, const WorldContest::Entrant& a,
   return met;
 }
 
-/// Whether so many families answer with events within so many microseconds on average where so
-/// many bodies move in a level.
-bool level(std::string_view part, std::uint32_t movers, double most_us, int families, int rounds) {
+/// Whether at least `families` families answer with events within a mean of `max_us` in a level
+/// with `movers` moving bodies.
+bool level(std::string_view part, std::uint32_t movers, double max_us, int families, int rounds) {
   StaticLevel world(1'000'000, movers);
   int met = 0;
   for (const std::string id : {"tide", "kd", "dbvt-d", "dbvt-f", "tracy"}) {
     for (const auto& [answer, name] : kAnswerKinds.entries) {
-      WorldContest contest;  // alone: a frame of another would take the caches
+      WorldContest contest;  // of a single entrant: others would evict its caches
       if (!contest.add(id, caseOf(id, answer), world)) continue;
       contest.run(5, rounds);
       WorldContest::Entrant& entrant = contest.entrants()[0];
@@ -57,7 +57,7 @@ bool level(std::string_view part, std::uint32_t movers, double most_us, int fami
       fmt::print("{} {:8} {:7} start {:7.2f} s  mean {:9.2f} us  median {:9.2f}  p99 {:9.2f}\n",
                  part, id, name, static_cast<double>(entrant.start_ns) * 1e-9, us,
                  quantile(entrant.us, 0.5), quantile(entrant.us, 0.99));
-      met += us <= most_us && answer == AnswerKind::events ? 1 : 0;
+      met += us <= max_us && answer == AnswerKind::events ? 1 : 0;
     }
   }
   return met >= families;
@@ -91,7 +91,7 @@ void culling(int rounds) {
 }
 
 bool worlds(int rounds) {
-  constexpr double kMost = 1.1;
+  constexpr double kMaxRatio = 1.1;
   bool met = true;
   ManyWorlds all(256, 100);
   for (const Algorithm& algorithm : builtinAlgorithms()) {
@@ -104,18 +104,18 @@ bool worlds(int rounds) {
     std::vector<std::unique_ptr<CaseExecutor>> hosts;
     for (std::uint32_t world = 0; world < all.worlds(); ++world) {
       hosts.push_back(makeLocalHost(caseOf(id), {}));
-      hosts.back()->start(all.sceneOfOne(), all.frameOfOne(world));
+      hosts.back()->start(all.worldScene(), all.worldFrame(world));
     }
     for (int round = -3; round < rounds; ++round) {
       contest.run(round < 0 ? 1 : 0, round < 0 ? 0 : 1);
       double us = 0;
       for (std::uint32_t world = 0; world < all.worlds(); ++world) {
-        const StepResult run = hosts[world]->step(all.frameOfOne(world));
-        us += static_cast<double>(run.times[Phase::total]) * 1e-3;
+        const StepResult result = hosts[world]->step(all.worldFrame(world));
+        us += static_cast<double>(result.times[Phase::total]) * 1e-3;
       }
       if (round >= 0) apart.us.push_back(us);
     }
-    met &= compare("worlds " + id, contest.entrants()[0], apart, kMost);
+    met &= compare("worlds " + id, contest.entrants()[0], apart, kMaxRatio);
   }
   return met;
 }
@@ -124,13 +124,13 @@ int run(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const std::string_view part = argc > 1 ? argv[1] : "all";
   const int rounds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 100;
-  const auto is_asked = [&](std::string_view name) { return part == "all" || part == name; };
+  const auto selected = [&](std::string_view name) { return part == "all" || part == name; };
   bool met = true;
-  if (is_asked("level")) met &= level("level", 100, 100, 2, rounds);
-  if (is_asked("still")) met &= level("still", 0, 1, 1, rounds);
-  if (is_asked("traffic")) met &= traffic(rounds);
-  if (is_asked("culling")) culling(rounds);
-  if (is_asked("worlds")) met &= worlds(rounds);
+  if (selected("level")) met &= level("level", 100, 100, 2, rounds);
+  if (selected("still")) met &= level("still", 0, 1, 1, rounds);
+  if (selected("traffic")) met &= traffic(rounds);
+  if (selected("culling")) culling(rounds);
+  if (selected("worlds")) met &= worlds(rounds);
   return met ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

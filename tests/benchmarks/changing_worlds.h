@@ -1,4 +1,4 @@
-// Worlds that change by themselves, frame by frame, and algorithms that take turns in them.
+// Worlds that change from frame to frame, and contests of algorithms in them.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace broadmark::benchmarks {
 
-/// Boxes that change a little in every frame, and which did.
+/// Boxes that change a little in every frame, and the list of changed bodies.
 class LivingWorld {
  public:
   LivingWorld() = default;
@@ -37,10 +37,10 @@ class LivingWorld {
   }
 
  protected:
-  /// Sets boxes by put().
+  /// Changes boxes by put().
   virtual void change() = 0;
 
-  /// Fills the slots; the world is the cube of this side.
+  /// Sets the scene and its boxes; the world is a cube with edge `side`.
   void begin(std::string name, std::span<const Aabb> boxes, float side,
              CollisionFilter filter = {}) {
     scene_.name = std::move(name);
@@ -60,20 +60,20 @@ class LivingWorld {
     changed_.push_back(body);
   }
 
-  [[nodiscard]] std::uint32_t anybody() {
+  [[nodiscard]] std::uint32_t randomBody() {
     return std::uniform_int_distribution<std::uint32_t>(0, size() - 1)(random_);
   }
   [[nodiscard]] float number(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(random_);
   }
-  /// A unit cube anywhere.
-  [[nodiscard]] Aabb anywhere() {
+  /// A unit cube at a random position.
+  [[nodiscard]] Aabb randomCube() {
     return inputs::boxAt({number(0, side_), number(0, side_), number(0, side_)}, {1, 1, 1});
   }
-  /// The unit cube that a step of up to `most` on each axis leads to, within the world.
-  [[nodiscard]] Aabb stepped(const Aabb& box, float most) {
+  /// The unit cube after a random step of up to `max` on each axis, clamped to the world.
+  [[nodiscard]] Aabb stepped(const Aabb& box, float max) {
     const auto moved = [&](std::size_t axis) {
-      return std::clamp(box.min[axis] + number(-most, most), 0.0F, side_);
+      return std::clamp(box.min[axis] + number(-max, max), 0.0F, side_);
     };
     return inputs::boxAt({moved(0), moved(1), moved(2)}, {1, 1, 1});
   }
@@ -87,15 +87,15 @@ class LivingWorld {
   std::mt19937 random_{1};
 };
 
-/// Unit cubes, a tenth of the space: nearly all stand still and, with `layers`, do not meet each
-/// other; the last ones wander about.
+/// Unit cubes, a tenth of the space: nearly all are static and, with `layers`, not paired with each
+/// other; the last `movers` bodies move.
 class StaticLevel final : public LivingWorld {
  public:
   StaticLevel(std::uint32_t still, std::uint32_t movers, bool layers = true) : movers_(movers) {
-    const std::uint32_t all = still + movers;
-    std::vector<BodyGroups> groups(all);
-    for (std::uint32_t body = still; body < all; ++body) groups[body].layer = 1;
-    begin("StaticLevel", inputs::uniform(all, 0, 1), inputs::cubeRoot(10.0 * all),
+    const std::uint32_t bodies = still + movers;
+    std::vector<BodyGroups> groups(bodies);
+    for (std::uint32_t body = still; body < bodies; ++body) groups[body].layer = 1;
+    begin("StaticLevel", inputs::uniform(bodies, 0, 1), inputs::cubeRoot(10.0 * bodies),
           layers ? CollisionFilter(groups, LayerMatrix().set(0, 1).set(1, 1)) : CollisionFilter());
   }
 
@@ -110,7 +110,7 @@ class StaticLevel final : public LivingWorld {
   std::uint32_t movers_;
 };
 
-/// In every frame other bodies move, and others stay where they are; or all move.
+/// In every frame, a random selection of `movers` bodies moves; or all.
 class SomeMove final : public LivingWorld {
  public:
   SomeMove(std::span<const Aabb> boxes, std::uint32_t movers) : movers_(movers) {
@@ -120,7 +120,7 @@ class SomeMove final : public LivingWorld {
  private:
   void change() override {
     for (std::uint32_t i = 0; i < movers_; ++i) {
-      const std::uint32_t body = movers_ == size() ? i : anybody();
+      const std::uint32_t body = movers_ == size() ? i : randomBody();
       Aabb to = box(body);
       for (int axis = 0; axis < 3; ++axis) {
         const float step = number(-0.5F, 0.5F);
@@ -134,7 +134,7 @@ class SomeMove final : public LivingWorld {
   std::uint32_t movers_;
 };
 
-/// In every frame some bodies vanish, and as many appear elsewhere, in slots that are free.
+/// In every frame, some bodies vanish, and as many appear elsewhere in free slots.
 class ComeAndGo final : public LivingWorld {
  public:
   ComeAndGo(std::uint32_t bodies, std::uint32_t guests) {
@@ -150,17 +150,17 @@ class ComeAndGo final : public LivingWorld {
   void change() override {
     const std::vector<std::uint32_t> arriving = free_;
     for (std::uint32_t& slot : free_) {
-      do slot = anybody();
+      do slot = randomBody();
       while (isEmpty(box(slot)));
       put(slot, kEmptyBox);
     }
-    for (const std::uint32_t slot : arriving) put(slot, anywhere());
+    for (const std::uint32_t slot : arriving) put(slot, randomCube());
   }
 
   std::vector<std::uint32_t> free_;
 };
 
-/// Small worlds, all at the same place.
+/// Small worlds, all at the same position.
 class ManyWorlds final : public LivingWorld {
  public:
   ManyWorlds(std::uint32_t worlds, std::uint32_t bodies_each)
@@ -180,14 +180,14 @@ class ManyWorlds final : public LivingWorld {
   }
 
   [[nodiscard]] std::uint32_t worlds() const { return worlds_; }
-  /// One of the worlds, as if there were no other.
-  [[nodiscard]] SceneInfo sceneOfOne() const {
-    SceneInfo one = scene();
-    one.objects = bodies_each_;
-    one.filter = {};
-    return one;
+  /// The scene of a single world.
+  [[nodiscard]] SceneInfo worldScene() const {
+    SceneInfo single = scene();
+    single.objects = bodies_each_;
+    single.filter = {};
+    return single;
   }
-  [[nodiscard]] Frame frameOfOne(std::uint32_t world) const {
+  [[nodiscard]] Frame worldFrame(std::uint32_t world) const {
     return {frame().index, frame().boxes.subspan(std::size_t{world} * bodies_each_, bodies_each_),
             all_};
   }
@@ -202,10 +202,10 @@ class ManyWorlds final : public LivingWorld {
   std::vector<std::uint32_t> all_;
 };
 
-/// Cases that take turns, a frame each; each is in a world of its own or shares one.
+/// Cases that alternate frame by frame, each in its own or a shared world.
 class WorldContest {
  public:
-  /// Begins the case; false, and why is printed, if it cannot run. `world` is borrowed.
+  /// Starts the case; if it cannot run, prints the reason and returns false. Borrows `world`.
   bool add(std::string name, const Case& entered, LivingWorld& world) {
     Entrant added = {.name = std::move(name), .host = makeLocalHost(entered, {}), .world = &world};
     try {
@@ -219,19 +219,19 @@ class WorldContest {
     return true;
   }
 
-  /// Frames that are not measured, then `rounds` that are.
-  void run(int unmeasured, int rounds) {
+  /// Runs warm-up frames, then `rounds` measured frames.
+  void run(int warm_up, int rounds) {
     std::mt19937 random;
     std::vector<std::size_t> order(entrants_.size());
     std::iota(order.begin(), order.end(), 0);
-    for (int round = -unmeasured; round < rounds; ++round) {
+    for (int round = -warm_up; round < rounds; ++round) {
       for (LivingWorld* const world : worlds_) world->step();
       std::ranges::shuffle(order, random);
-      for (const std::size_t turn : order) {
-        Entrant& entrant = entrants_[turn];
-        const StepResult run = entrant.host->step(entrant.world->frame());
+      for (const std::size_t i : order) {
+        Entrant& entrant = entrants_[i];
+        const StepResult result = entrant.host->step(entrant.world->frame());
         if (round < 0) continue;
-        entrant.us.push_back(static_cast<double>(run.times[Phase::total]) * 1e-3);
+        entrant.us.push_back(static_cast<double>(result.times[Phase::total]) * 1e-3);
       }
     }
   }

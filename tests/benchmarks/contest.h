@@ -1,5 +1,5 @@
-// Algorithms that take turns, frame by frame, on the same boxes: anything else that slows the
-// machine slows all of them, so that ratios of their times mean something.
+// Contests of algorithms that alternate frame by frame on the same boxes: background load affects
+// all of them, so that the ratios of their times are meaningful.
 #pragma once
 
 #include <algorithm>
@@ -25,14 +25,14 @@
 
 namespace broadmark::benchmarks {
 
-/// The built-in algorithm of that id, or nothing.
+/// The built-in algorithm with this id, or nothing.
 inline std::optional<Algorithm> findAlgorithm(std::string_view id) {
   const std::vector<Algorithm> all = builtinAlgorithms();
   const auto found = std::ranges::find(all, id, &Algorithm::id);
   return found == all.end() ? std::nullopt : std::optional(*found);
 }
 
-/// The built-in algorithm of that id, which must be there, with the widest instruction set.
+/// A case of the built-in algorithm with this id, with the widest instruction set.
 inline Case caseOf(std::string_view id, AnswerKind answer = AnswerKind::pairs, int threads = 1) {
   return makeCase(findAlgorithm(id).value(), bestIsa(), threads, "", {}, answer);
 }
@@ -45,15 +45,14 @@ struct Contestant {
   std::vector<double> milliseconds = {};
 
   [[nodiscard]] double median() const { return quantile(milliseconds, 0.5); }
-  /// Of the last frame.
+  /// The pairs of the last frame.
   [[nodiscard]] PairRuns answer() const { return host->answer(); }
 };
 
-/// Contestants on the same frames, which are gone through to and fro, so that all motion is smooth.
+/// Contestants on the same frames, played forwards and backwards, so that all motion is smooth.
 class Contest {
  public:
-  /// `frames` must not be empty. They are copied to where recordings keep theirs: large ones into
-  /// huge pages.
+  /// `frames` must not be empty. Copies them as recordings do: large frames into huge pages.
   explicit Contest(std::string name, std::span<const std::vector<Aabb>> frames) {
     for (const std::vector<Aabb>& frame : frames) frames_.emplace_back(frame.begin(), frame.end());
     scene_.name = std::move(name);
@@ -73,7 +72,7 @@ class Contest {
     contestants_.push_back(std::move(added));
   }
 
-  /// May be called again, to go on.
+  /// May be called repeatedly; continues with the next frame.
   void run(int rounds) {
     if (next_frame_ == 1) {
       playRound();  // warms up
@@ -88,27 +87,27 @@ class Contest {
 
   /// Time of `a` / time of `b`, in each round.
   [[nodiscard]] std::vector<double> ratios(std::string_view a, std::string_view b) const {
-    const std::vector<double>& of_a = find(a).milliseconds;
-    const std::vector<double>& of_b = find(b).milliseconds;
+    const std::vector<double>& times_a = find(a).milliseconds;
+    const std::vector<double>& times_b = find(b).milliseconds;
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < of_a.size(); ++i) ratios.push_back(of_a[i] / of_b[i]);
+    for (std::size_t i = 0; i < times_a.size(); ++i) ratios.push_back(times_a[i] / times_b[i]);
     return ratios;
   }
-  /// Their median.
+  /// The median of ratios().
   [[nodiscard]] double ratio(std::string_view a, std::string_view b) const {
     return quantile(ratios(a, b), 0.5);
   }
 
  private:
   void playRound() {
-    // Nobody always comes first.
+    // A random order, so that no contestant is always the first.
     std::vector<std::size_t> order(contestants_.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::shuffle(order, random_);
     const std::uint32_t index = next_frame_++;
     const Frame frame = changed_bodies_.complete({index, boxesOf(index)});
-    for (const std::size_t turn : order) {
-      Contestant& contestant = contestants_[turn];
+    for (const std::size_t i : order) {
+      Contestant& contestant = contestants_[i];
       const std::int64_t ns = contestant.host->step(frame).times[Phase::total];
       contestant.milliseconds.push_back(static_cast<double>(ns) * 1e-6);
     }
@@ -117,8 +116,8 @@ class Contest {
   [[nodiscard]] std::span<const Aabb> boxesOf(std::uint32_t index) const {
     const std::size_t last = frames_.size() - 1;
     if (last == 0) return frames_[0];
-    const std::size_t way = index % (2 * last);
-    return frames_[way <= last ? way : 2 * last - way];
+    const std::size_t phase = index % (2 * last);
+    return frames_[phase <= last ? phase : 2 * last - phase];
   }
 
   SceneInfo scene_;
@@ -129,12 +128,12 @@ class Contest {
   std::mt19937 random_;
 };
 
-/// What main() of a benchmark does: run(argc, argv) returns the exit status; an exception is
-/// printed behind the benchmark's name, and the status is 2.
-template <class Run>
-int runMain(const char* name, Run run, int argc, char** argv) {
+/// Implements main() of a benchmark: `benchmark(argc, argv)` returns the exit status. Prints an
+/// exception with the benchmark's name; the exit status is then 2.
+template <class Benchmark>
+int runMain(const char* name, Benchmark benchmark, int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return benchmark(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
     return 2;

@@ -1,10 +1,10 @@
-// Shows how little a worker process changes times: a duel of each case in this process with the
-// same in a worker process, on boxes of many sizes that drift about, one in twenty jumps. Prints
-// the median of the paired ratios (worker / this process) and its 95 % confidence interval: same
-// within 3 % of 1. Exit status 1 where any differs.
+// Measures the overhead of a worker process: a duel of each case in this process with the same case
+// in a worker process, on drifting boxes of many sizes; one in twenty jumps. Prints the median of
+// the paired ratios (worker / this process) and its 95 % confidence interval: same within 3 % of 1.
+// Exit status 1 where any differs.
 //
-// With --pin: of the case in two worker processes, in one of which its threads are pinned; the
-// spread is the distance of a time's quartiles, as a share of the median.
+// With --pin: a duel of the case in two worker processes, one of them with pinned threads. The
+// spread is the interquartile range of a time, as a share of the median.
 //
 //   host_ratios [ALGORITHM...] [--objects N,...] [--threads T] [--seconds S] [--pin]
 
@@ -39,19 +39,21 @@ struct Options {
 };
 
 ExecutorFactory workerMaker(bool pin) {
-  return [pin](const Case& run, CancelQuery) {
-    return makeWorkerProcess(run, WorkerOptions{.command = {"/proc/self/exe", "worker"},
-                                                .hard_limit = std::chrono::hours(1),
-                                                .pin = pin});
+  return [pin](const Case& test_case, CancelQuery) {
+    return makeWorkerProcess(test_case, WorkerOptions{.command = {"/proc/self/exe", "worker"},
+                                                      .hard_limit = std::chrono::hours(1),
+                                                      .pin = pin});
   };
 }
 
-std::vector<DuelSide> sidesOf(const Case& run, bool pin) {
-  if (pin) return {{"free", run, workerMaker(false)}, {"pinned", run, workerMaker(true)}};
-  return {{"here", run}, {"there", run, workerMaker(false)}};
+std::vector<DuelSide> sidesOf(const Case& test_case, bool pin) {
+  if (pin) {
+    return {{"free", test_case, workerMaker(false)}, {"pinned", test_case, workerMaker(true)}};
+  }
+  return {{"here", test_case}, {"there", test_case, workerMaker(false)}};
 }
 
-/// A few frames, to and fro, so that all motion is smooth.
+/// A few frames, played forwards and backwards, so that all motion is smooth.
 class Drifting final : public IndexedFrames {
  public:
   explicit Drifting(std::size_t objects) {
@@ -68,21 +70,21 @@ class Drifting final : public IndexedFrames {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
     const std::size_t last = frames_.size() - 1;
-    const std::size_t way = index % (2 * last);
-    return frames_[way <= last ? way : 2 * last - way];
+    const std::size_t phase = index % (2 * last);
+    return frames_[phase <= last ? phase : 2 * last - phase];
   }
 
   std::vector<std::vector<Aabb>> frames_;
   SceneInfo scene_;
 };
 
-/// Prints one line; false where the times differ.
+/// Prints a line of results; false if the times differ.
 bool measure(const std::string& id, Drifting& frames, const Options& options) {
   const std::optional<Algorithm> algorithm = findAlgorithm(id);
   if (!algorithm) throw std::invalid_argument("no algorithm '" + id + "'");
-  const Case run = makeCase(*algorithm, bestIsa(), options.threads, "", {});
+  const Case test_case = makeCase(*algorithm, bestIsa(), options.threads, "", {});
   const DuelResult duel =
-      runDuel(sidesOf(run, options.pin), frames,
+      runDuel(sidesOf(test_case, options.pin), frames,
               {.precision = kSame, .max_seconds = options.seconds, .check = CheckMode::off});
   fmt::print("{:>8}  {:10} ", frames.scene().objects, id);
   if (!duel.ok()) {
@@ -95,9 +97,9 @@ bool measure(const std::string& id, Drifting& frames, const Options& options) {
   const Verdict verdict = verdictOn(ratio.ci95, kSame);
   fmt::print("{:4} rounds", duel.rounds());
   for (const DuelResult::Side& side : duel.sides) {
-    const auto at = [&](double q) { return 1e3 * quantile(side.seconds, q); };
-    fmt::print("  {} {:10.4f} ms (spread {:2.0f} %)", side.name, at(0.5),
-               100 * (at(0.75) - at(0.25)) / at(0.5));
+    const auto ms = [&](double q) { return 1e3 * quantile(side.seconds, q); };
+    fmt::print("  {} {:10.4f} ms (spread {:2.0f} %)", side.name, ms(0.5),
+               100 * (ms(0.75) - ms(0.25)) / ms(0.5));
   }
   fmt::print("  {:.3f} [{:.3f}, {:.3f}]  {}\n", ratio.value, ratio.ci95.low, ratio.ci95.high,
              kVerdicts.nameOf(verdict));

@@ -1,13 +1,13 @@
-// Whether the inspector measures what a headless run measures: the same cases on the same frames in
-// turn, once by runCase(), once by the inspector while it plays and draws. Prints the ratio of the
-// medians of a frame's total time (1: they agree), and how many of the inspector's frames were
-// disturbed.
+// Compares times that the inspector measures with those of a headless run: the same cases on the
+// same frames, alternately by runCase() and by the inspector while it plays and draws. Prints the
+// ratio of the medians of a frame's total time (1: they agree), and the number of disturbed frames
+// in the inspector.
 //
-// Then how long it takes from a click on an earlier frame to its picture: one that has been seen,
-// and one that an algorithm has to run to again, for its structure.
+// Then the latency from a click on an earlier frame to its picture: of a frame in the cache, and of
+// one that an algorithm has to run to again, for its structure.
 //
-// And how many pictures a second there are with everything on, while the camera turns and while the
-// scene is played.
+// Then the number of pictures per second with all options on, while the camera turns and during
+// playback.
 //
 //   inspector_times [--objects N] [--frames F] [--rounds R] [--seek-from F] [--seek-to F]
 //                   [--crowd N]
@@ -69,23 +69,23 @@ struct Watched {
       : target(gl, kWidth, kHeight, 1), inspector(gl, builtinAlgorithms(), {}, 1) {
     session().draft.take(simulationOf(setting));
     session().draft.simulate();
-    LaneEdit& lane = session().lanes.add(setting.algorithm);
-    lane.run.threads = 1;
-    session().lanes.changed();
+    TrackEdit& track = session().tracks.add(setting.algorithm);
+    track.test_case.threads = 1;
+    session().tracks.changed();
   }
 
   [[nodiscard]] Session& session() { return inspector.session(); }
   void draw() {
     inspector.draw(input, kWidth, kHeight, 1.0 / 60, [&] { target.bind(); });
   }
-  /// Draws until a picture shows what is wanted. Returns the seconds since the call.
-  template <class IsThere>
-  double drawUntil(const IsThere& is_there) {
+  /// Draws until the condition holds for a snapshot. Returns the elapsed seconds.
+  template <class Condition>
+  double drawUntil(const Condition& condition) {
     const auto start = std::chrono::steady_clock::now();
-    bool there = false;
-    while (!there) {
-      session().runs.look([&](const RunProgress& progress) {
-        there = progress.snapshot && is_there(*progress.snapshot);
+    bool done = false;
+    while (!done) {
+      session().runs.readProgress([&](const RunProgress& progress) {
+        done = progress.snapshot && condition(*progress.snapshot);
       });
       draw();
     }
@@ -112,18 +112,18 @@ void printSeekTimes(const Gl& gl, const Seek& seek, const std::string& crowd,
   watched.session().playback.goTo(seek.to);
   const double seen =
       watched.drawUntil([&](const Snapshot& snapshot) { return snapshot.frame == seek.to; });
-  watched.session().view.structure = true;
+  watched.session().display.structure = true;
   const double run_again =
       watched.drawUntil([](const Snapshot& snapshot) { return snapshot.structure != nullptr; });
   fmt::print("{:12} frame {} to {} of {} bodies: seen {:.0f} ms, run again {:.1f} s\n", algorithm,
              seek.from, seek.to, crowd, 1000 * seen, run_again);
 }
 
-/// All that can be shown: the cells of the algorithm and lines between all pairs, selected bodies
-/// through others, a second view with another algorithm's answer, both in the timeline.
+/// Enables all drawing: cells of the algorithm, lines between all pairs, selected bodies through
+/// others, a second view with another algorithm's answer, both in the timeline.
 void showEverything(Session& session) {
-  session.lanes.add("grid2d-sap");
-  ViewOptions& view = session.view;
+  session.tracks.add("grid2d-sap");
+  DisplayOptions& view = session.display;
   view.pair_lines = view.lines_of_all = view.xray = view.structure = true;
   view.structure_near = false;
   view.filter = {.largest = 1e6};
@@ -131,16 +131,16 @@ void showEverything(Session& session) {
   session.showSecond(true);
 }
 
-/// The milliseconds of each picture while draw() is called for some seconds; the first one, which
-/// uploads what is new, does not count.
-template <class Draw>
-std::vector<double> pictureTimes(const Draw& draw) {
+/// The milliseconds of each picture while draw_picture() is called for some seconds; without the
+/// first picture, which uploads new data.
+template <class DrawPicture>
+std::vector<double> pictureTimes(const DrawPicture& draw_picture) {
   constexpr double kSeconds = 5;
   std::vector<double> times;
-  draw();
+  draw_picture();
   for (double sum = 0; sum < 1000 * kSeconds; sum += times.back()) {
     const auto start = std::chrono::steady_clock::now();
-    draw();
+    draw_picture();
     times.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
@@ -153,16 +153,16 @@ void printPictureTimes(const Gl& gl, const std::string& crowd) {
   Session& session = watched.session();
   showEverything(session);
   watched.drawUntil([](const Snapshot& snapshot) { return snapshot.frame == 0; });
-  session.playback.goTo(1);  // in frame 0 no algorithm has found anything yet
+  session.playback.goTo(1);  // frame 0 has no answer yet
   watched.drawUntil([](const Snapshot& snapshot) { return snapshot.structure != nullptr; });
   session.runs.waitUntilIdle(std::chrono::seconds(60));
-  // Pictures of the same frame cost little while nothing turns: these are no measure.
-  const auto print = [&](const char* what, std::vector<double> times, std::size_t changes) {
+  // Counts different pictures only: to redraw an unchanged picture costs little.
+  const auto print = [&](const char* mode, std::vector<double> times, std::size_t changes) {
     const double seconds = std::accumulate(times.begin(), times.end(), 0.0) / 1000;
     std::ranges::sort(times);
     fmt::print(
         "{} bodies, everything on, {:8} {:5.1f} different pictures a second (95 %: {:.1f} ms)\n",
-        crowd, what, static_cast<double>(changes) / seconds, times[times.size() * 95 / 100]);
+        crowd, mode, static_cast<double>(changes) / seconds, times[times.size() * 95 / 100]);
   };
   float x = 0.4F * kWidth;  // in the first view
   const auto move_mouse = [&] {
@@ -184,7 +184,7 @@ void printPictureTimes(const Gl& gl, const std::string& crowd) {
   const std::vector<double> playing = pictureTimes([&] {
     watched.draw();
     gl.Finish();
-    session.runs.look(
+    session.runs.readProgress(
         [&](const RunProgress& progress) { frames.insert(progress.snapshot->frame); });
   });
   print("playing", playing, frames.size());
@@ -203,11 +203,11 @@ InspectorTimes inspectorTimes(const Gl& gl, const Setting& setting) {
   for (bool playing = false, done = false; !done;) {
     watched.draw();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    session.runs.look([&](const RunProgress& progress) {
+    session.runs.readProgress([&](const RunProgress& progress) {
       if (!progress.snapshot) return;
       done = playing && progress.snapshot->frame == progress.scene.frames;
       if (!done) return;
-      for (const FrameRecord& record : progress.lanes.at(0).frames) {
+      for (const FrameRecord& record : progress.tracks.at(0).frames) {
         result.disturbed += record.disturbed ? 1 : 0;
         if (!record.disturbed) {
           result.times.push_back(static_cast<double>(record.times[Phase::total]));
@@ -250,9 +250,9 @@ int main(int argc, char** argv) {
     int disturbed = 0;
     for (int round = 0; round < rounds; ++round) {
       headless.push_back(median(headlessTimes(setting)));
-      const InspectorTimes seen = inspectorTimes(gl, setting);
-      inspector.push_back(median(seen.times));
-      disturbed += seen.disturbed;
+      const InspectorTimes measured = inspectorTimes(gl, setting);
+      inspector.push_back(median(measured.times));
+      disturbed += measured.disturbed;
     }
     const double a = median(headless);
     const double b = median(inspector);

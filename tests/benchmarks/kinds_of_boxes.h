@@ -1,4 +1,4 @@
-// Kinds of boxes that benchmarks know by name.
+// Distributions of boxes that benchmarks select by name.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using namespace inputs;
 
 inline float sideFor(std::size_t n) { return cubeRoot(10.0 * static_cast<double>(n)); }
 
-/// Edges 0.1 to 1.9, every 200th box with one of 5 to 15.
+/// Edges 0.1 to 1.9; every 200th box has an edge of 5 to 15.
 inline std::vector<Aabb> sizes(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   return generate(n, frame, seed, [side = sideFor(n)](Random& random, std::size_t i) {
     Vec3 edges;
@@ -29,7 +29,7 @@ inline std::vector<Aabb> sizes(std::size_t n, std::uint32_t frame, std::uint64_t
   });
 }
 
-/// Ten boxes of half the world's side among unit cubes, and one over all.
+/// Unit cubes, ten boxes with half the world's side, and a box that encloses all.
 inline std::vector<Aabb> giants(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   return generate(n, frame, seed, [side = sideFor(n), n](Random& random, std::size_t i) {
     if (i == 0) return boxAt({-1, -1, -1}, {side + 3, side + 3, side + 3});
@@ -38,7 +38,7 @@ inline std::vector<Aabb> giants(std::size_t n, std::uint32_t frame, std::uint64_
   });
 }
 
-/// Edges by a power law, up to the world's side.
+/// Edges with a power-law distribution, up to the world's side.
 inline std::vector<Aabb> powerLaw(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   return generate(n, frame, seed, [side = sideFor(n)](Random& random, std::size_t) {
     const float edge = std::min(side, 0.3F / std::sqrt(random.uniform(1e-6F, 1)));
@@ -50,8 +50,8 @@ inline std::vector<Aabb> powerLaw(std::size_t n, std::uint32_t frame, std::uint6
 inline std::vector<Aabb> clusters(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   const float spread = cubeRoot(static_cast<double>(n) / 200);
   return generate(n, frame, seed, [=, side = 6 * sideFor(n)](Random& random, std::size_t i) {
-    Random of_cluster(i % 100, frame);
-    const Vec3 centre = of_cluster.inCube(side);
+    Random cluster_random(i % 100, frame);
+    const Vec3 centre = cluster_random.inCube(side);
     Vec3 corner = random.inCube(spread);
     for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] += centre[axis];
     return boxAt(corner, {1, 1, 1});

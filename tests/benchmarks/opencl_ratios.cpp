@@ -1,7 +1,7 @@
-// Measures our own algorithms on an OpenCL device against Bullet's of the same kind, on the same
-// device, and prints how many times faster they are, beside the targets, which are for PoCL. They
-// take turns, frame by frame, on unit cubes spread evenly over a cube of volume 10 n, elsewhere in
-// every frame. Exit status 1 if a target is missed or pairs are wrong.
+// Measures the project's OpenCL algorithms against Bullet's of the same kind, on the same device,
+// and prints the speed-ups beside the targets, which are for PoCL. The algorithms alternate frame
+// by frame, on unit cubes uniform in a cube of volume 10 n, at new positions in every frame. Exit
+// status 1 if a target is missed or pairs are wrong.
 //
 //   opencl_ratios [KIND...] [--objects N,...] [--rounds R] [--threads T] [--device NAME]
 
@@ -25,10 +25,10 @@ namespace {
 using namespace broadmark;
 using broadmark::benchmarks::Contest;
 
-/// How many times faster ours is to be than Bullet's, for kTargetObjects bodies.
+/// Minimum speed-up over Bullet's algorithm, for kTargetObjects bodies.
 struct Target {
   std::string_view kind;
-  double least = 0;
+  double min = 0;
 };
 constexpr Target kTargets[] = {{"grid", 8}, {"lbvh", 1.3}, {"sap", 15}};
 constexpr std::size_t kTargetObjects = 512'000;
@@ -41,7 +41,7 @@ struct Options {
   std::string device;
 };
 
-/// Adds the algorithm; false, with a line that says why, if it cannot run here.
+/// Adds the algorithm; if it cannot run here, prints the reason and returns false.
 bool enter(Contest& contest, const std::string& id, const Options& options) {
   const std::optional<Algorithm> algorithm = benchmarks::findAlgorithm(id);
   if (!algorithm) throw InputError("built without OpenCL");
@@ -58,7 +58,7 @@ std::string line(const Contest& contest, const std::string& id) {
   return fmt::format("{:8} {:8.2f} ms", id, contest.find(id).median());
 }
 
-/// Prints one line; false if the target is missed or pairs are wrong.
+/// Prints a line of results; false if the target is missed or pairs are wrong.
 bool measure(const Target& target, std::span<const std::vector<Aabb>> frames,
              const Options& options) {
   const std::string own = fmt::format("gpu-{}", target.kind);
@@ -78,8 +78,8 @@ bool measure(const Target& target, std::span<const std::vector<Aabb>> frames,
   const double ratio = contest.ratio(bullets, own);
   fmt::print("  {:6.2f}x{}", ratio, same ? "" : "  WRONG PAIRS");
   const bool counts = contest.scene().objects == kTargetObjects;
-  const bool met = ratio >= target.least;
-  if (counts) fmt::print("  target {:.1f}x  {}", target.least, met ? "ok" : "MISSED");
+  const bool met = ratio >= target.min;
+  if (counts) fmt::print("  target {:.1f}x  {}", target.min, met ? "ok" : "MISSED");
   fmt::print("\n");
   std::fflush(stdout);
   return same && (met || !counts);

@@ -1,8 +1,8 @@
-// Measures what the Bullet engine costs beside a plain loop over Bullet's world with its defaults:
-// the same bodies, walls, time step and iterations, and what Brownian and Gravity do in each frame.
-// Or, with --settings, what single settings of Bullet cost and bring, in the plain loop. All take
-// turns frame by frame and are measured by the processor time of their thread, so that whatever
-// else slows the machine slows all. Exit status 1 where the engine is slower than the plain loop.
+// Measures the Bullet engine against a plain loop over Bullet's world with its defaults: the same
+// bodies, walls, time step and iterations, and the same actions of the scenes Brownian and Gravity.
+// Or, with --settings, the effect of single settings of Bullet, in the plain loop. Contestants
+// alternate frame by frame and are measured by the CPU time of their thread, so that background
+// load affects all of them. Exit status 1 if the engine is slower than the plain loop.
 //
 //   plain_bullet [--settings] [OBJECTS [FRAMES]]
 
@@ -26,7 +26,7 @@
 
 #include "broadmark/scenes/scene.h"
 
-// Margins are settings of the whole process: each side sets them before it steps.
+// Margins are global to the process: each contestant sets them before its step.
 extern btScalar gContactBreakingThreshold;
 extern btScalar gDbvtMargin;
 
@@ -59,7 +59,7 @@ class PlainBody final : public PhysicsBody {
     const btVector3& v = body.getAngularVelocity();
     return {v.x(), v.y(), v.z()};
   }
-  void setPose(const Pose&) override {}  // neither scene does
+  void setPose(const Pose&) override {}  // not called by these scenes
   void setVelocity(const Vec3& linear, const Vec3& angular) override {
     body.setLinearVelocity(toBullet(linear));
     body.setAngularVelocity(toBullet(angular));
@@ -76,20 +76,20 @@ class PlainBody final : public PhysicsBody {
   btRigidBody body;
 };
 
-/// How Bullet is set up. By default as its manual shows it.
+/// Settings of Bullet. The defaults are those of its manual.
 struct Setup {
   std::string name;
   bool sweep_and_prune = false;     ///< as broad phase, instead of the tree
   bool pairs_at_once = false;       ///< searched in one pass over the tree (m_deferedcollide)
   int tree_improvement = 0;         ///< per cent of the tree in each step (m_dupdates)
-  bool sleepers_keep_box = false;   ///< bodies asleep are left alone in the broad phase
-  btScalar tree_margin = 0.05F;     ///< how far a body may move before the tree is updated
-  btScalar contact_margin = 0.02F;  ///< contacts are kept up to this distance
+  bool sleepers_keep_box = false;   ///< the broad phase does not update sleeping bodies
+  btScalar tree_margin = 0.05F;     ///< maximum movement of a body without a tree update
+  btScalar contact_margin = 0.02F;  ///< maximum distance of retained contacts
   bool conjugate_gradients = false;
   bool warm_start = true;
   bool two_friction_directions = false;
-  bool split_impulse = true;  ///< bodies are pushed apart without gaining speed
-  bool continuous = true;     ///< the pass for fast bodies
+  bool split_impulse = true;  ///< separates bodies without adding velocity
+  bool continuous = true;     ///< continuous collision detection, for fast bodies
   bool gyroscopic = true;
 };
 
@@ -100,14 +100,14 @@ const Setup kInUse = {.name = "as in use",
                       .sleepers_keep_box = true,
                       .two_friction_directions = true};
 
-/// What is measured against them: one change each.
+/// The settings in use, then variations with a single change each.
 std::vector<Setup> variations() {
-  std::vector<Setup> all = {kInUse};
+  std::vector<Setup> setups = {kInUse};
   const auto add = [&](const char* name, const std::function<void(Setup&)>& change) {
     Setup setup = kInUse;
     setup.name = name;
     change(setup);
-    all.push_back(setup);
+    setups.push_back(setup);
   };
   add("sweep and prune (bt32BitAxisSweep3)", [](Setup& s) { s.sweep_and_prune = true; });
   add("pairs searched body by body", [](Setup& s) { s.pairs_at_once = false; });
@@ -124,7 +124,7 @@ std::vector<Setup> variations() {
   add("no split impulse", [](Setup& s) { s.split_impulse = false; });
   add("no continuous pass", [](Setup& s) { s.continuous = false; });
   add("no gyroscopic term", [](Setup& s) { s.gyroscopic = false; });
-  return all;
+  return setups;
 }
 
 std::unique_ptr<btBroadphaseInterface> broadPhase(const Setup& setup, double side) {
@@ -144,7 +144,7 @@ std::unique_ptr<btSequentialImpulseConstraintSolver> solver(const Setup& setup) 
   return std::make_unique<btSequentialImpulseConstraintSolver>();
 }
 
-/// A plain loop over Bullet's own world.
+/// A plain loop over Bullet's world.
 class PlainBullet final : public PhysicsEngine {
  public:
   explicit PlainBullet(const Settings& settings, const Setup& setup = {})
@@ -187,7 +187,7 @@ class PlainBullet final : public PhysicsEngine {
   }
 
   void setLayers(const LayerMatrix&) override {}
-  void removeBody(PhysicsBody&) override {}  // the scenes that run here keep all bodies
+  void removeBody(PhysicsBody&) override {}  // not called by these scenes
 
   void addWall(const HalfSpace& wall) override {
     auto& shape = wall_shapes_.emplace_back(toBullet(wall.normal), wall.offset);
@@ -215,7 +215,7 @@ class PlainBullet final : public PhysicsEngine {
 
   [[nodiscard]] bool allAsleep() const override { return false; }
 
-  /// How deep bodies are in each other, on average over all points where they are.
+  /// Mean penetration depth over all penetrating contact points.
   [[nodiscard]] double meanPenetration() {
     double sum = 0;
     int points = 0;
@@ -245,14 +245,14 @@ class PlainBullet final : public PhysicsEngine {
   btDiscreteDynamicsWorld world_{&dispatcher_, broad_phase_.get(), solver_.get(), &configuration_};
 };
 
-/// Processor time that this thread has used.
+/// CPU time of this thread.
 double threadSeconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// One engine at work on a scene.
+/// An engine with a scene.
 class Contestant {
  public:
   Contestant(std::string name, const std::string& scene, std::int64_t objects,
@@ -324,8 +324,7 @@ bool contest(const std::string& scene, std::int64_t objects, std::uint32_t frame
   return ratio >= 1;
 }
 
-/// Prints what each variation costs in terms of the settings in use, and how well it keeps bodies
-/// apart.
+/// Prints the cost of each variation relative to the settings in use, and its mean penetration.
 void compareSettings(const std::string& scene, std::int64_t objects, std::uint32_t frames) {
   std::deque<Contestant> contestants;
   for (const Setup& setup : variations()) {
@@ -344,8 +343,8 @@ void compareSettings(const std::string& scene, std::int64_t objects, std::uint32
   }
 }
 
-int number(std::span<char*> arguments, std::size_t index, int otherwise) {
-  return index < arguments.size() ? std::max(1, std::atoi(arguments[index])) : otherwise;
+int number(std::span<char*> arguments, std::size_t index, int fallback) {
+  return index < arguments.size() ? std::max(1, std::atoi(arguments[index])) : fallback;
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// Columns against the best of our other algorithms on one thread, each kind of boxes at several
-// sizes, elsewhere in every frame. The contestants take turns frame by frame, so that anything else
-// that slows the machine slows all of them. Prints each ratio beside its target; exit status 1 if a
-// target is missed.
+// Compares `columns` with the best of the project's other algorithms on one thread, for each kind
+// of boxes with several numbers of bodies, at new positions in every frame. The contestants
+// alternate frame by frame, so that background load affects all of them. Prints each ratio beside
+// its target; exit status 1 if a target is missed.
 //
 //   record_ratios [KIND [ROUNDS [BODIES]]]
 //
-// KIND: one of kinds_of_boxes.h, or all. BODIES: only so many instead of several sizes.
+// KIND: a kind in kinds_of_boxes.h, or all. BODIES: a single number of bodies for all kinds.
 
 #include <fmt/format.h>
 
@@ -25,11 +25,11 @@ namespace {
 using namespace broadmark;
 using namespace broadmark::benchmarks;
 
-/// What is measured of a kind.
+/// The numbers of bodies and the target of a kind.
 struct Trial {
   std::string_view kind;
   std::vector<std::size_t> counts;
-  double target = 1 / 1.2;  ///< how many times faster than the best other one
+  double target = 1 / 1.2;  ///< minimum speed-up over the best other algorithm
 };
 
 std::vector<Trial> trials() {

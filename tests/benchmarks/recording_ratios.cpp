@@ -1,6 +1,6 @@
-// A scene as .aabbs and as .broadmark: how large either is, and how long it takes to read a frame
-// when all are read one after the other, the two kinds in turn, from files in the page cache.
-// Targets, for a scene that is mostly still: a tenth of the bytes, and no longer than .aabbs.
+// Compares .aabbs and .broadmark recordings of a scene: their sizes, and the time to read a frame
+// when all are read in order, the two formats alternately, from files in the page cache. Targets
+// of .broadmark, for a mostly static scene: a tenth of the bytes, and no slower than .aabbs.
 //
 //   recording_ratios [SCENE] [--objects N] [--frames F] [--rounds R]
 
@@ -34,8 +34,8 @@ struct Options {
   int rounds = 9;
 };
 
-/// A recording and the fastest pass through it.
-struct Kind {
+/// A recording and the time of the fastest pass through it.
+struct TimedRecording {
   std::unique_ptr<Recording> recording;
   double seconds = std::numeric_limits<double>::infinity();
 
@@ -70,22 +70,23 @@ int run(int argc, char** argv) {
   recordAll(*simulation, [&](const Frame& frame) {
     for (const auto& writer : writers) writer->write(frame.boxes);
   });
-  std::vector<Kind> kinds;
+  std::vector<TimedRecording> recordings;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     writers[i]->finish();
-    kinds.push_back({openRecordingFile(paths[i])});
-    fs::remove(paths[i]);  // it is there as long as it is open
+    recordings.push_back({openRecordingFile(paths[i])});
+    fs::remove(paths[i]);  // the open file remains readable
   }
   for (int round = 0; round < options.rounds; ++round) {
-    for (Kind& kind : kinds) kind.readThrough();
+    for (TimedRecording& recording : recordings) recording.readThrough();
   }
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
     fmt::print("{:>10}  {:12} bytes  {:9.4f} ms a frame\n", paths[i].extension().string(),
-               kinds[i].recording->bytes(), 1e3 * kinds[i].seconds / (1.0 + scene.frames));
+               recordings[i].recording->bytes(),
+               1e3 * recordings[i].seconds / (1.0 + scene.frames));
   }
-  const double smaller = static_cast<double>(kinds[0].recording->bytes()) /
-                         static_cast<double>(kinds[1].recording->bytes());
-  const double faster = kinds[0].seconds / kinds[1].seconds;
+  const double smaller = static_cast<double>(recordings[0].recording->bytes()) /
+                         static_cast<double>(recordings[1].recording->bytes());
+  const double faster = recordings[0].seconds / recordings[1].seconds;
   fmt::print("{} {} N{} F{}: {:.1f} times smaller, read {:.2f} times as fast\n", scene.name,
              scene.object_type, scene.objects, scene.frames, smaller, faster);
   return smaller >= kSmaller && faster >= 1 ? EXIT_SUCCESS : EXIT_FAILURE;

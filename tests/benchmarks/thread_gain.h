@@ -1,7 +1,7 @@
-// What several threads gain over one. The cores of a virtual machine are at times halves of one, or
-// shared with another guest, for tens of milliseconds: whatever runs there takes up to twice as
-// long, and nothing tells. So a plain loop is timed before and after, and rounds in which its
-// threads got in each other's way are left out.
+// Speed-up of several threads over one. The cores of a virtual machine may be SMT siblings, or
+// shared with another guest for tens of milliseconds: code then takes up to twice as long, without
+// an indication. So a plain loop is timed before and after each round, and rounds in which its
+// threads slowed each other are discarded.
 #pragma once
 
 #include <algorithm>
@@ -20,16 +20,16 @@
 
 namespace broadmark::benchmarks {
 
-/// Tells whether cores are whole.
+/// Detects whether cores are whole, that is, not shared.
 class WholeCores {
  public:
   explicit WholeCores(int cores) : team_(cores) {}
 
-  /// Whether a loop takes no longer on all of them at once than on one alone.
+  /// Whether a loop takes no longer on all cores at once than on a single core.
   bool areWhole() {
-    constexpr double kMost = 1.06;
-    const double alone = msOf([] { turn(); });
-    return msOf([&] { team_.run([](int) { turn(); }); }) <= kMost * alone;
+    constexpr double kMaxRatio = 1.06;
+    const double single = msOf([] { spin(); });
+    return msOf([&] { team_.run([](int) { spin(); }); }) <= kMaxRatio * single;
   }
 
  private:
@@ -40,9 +40,9 @@ class WholeCores {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
         .count();
   }
-  /// A millisecond of independent multiplications and additions, which keep a core busy: two such
-  /// loops on halves of one take twice as long.
-  static void turn() {
+  /// A millisecond of independent multiplications and additions, which saturate a core: two such
+  /// loops on SMT siblings take twice as long.
+  static void spin() {
     std::array<double, 24> sums;
     sums.fill(1);
     for (int i = 0; i < 250'000; ++i) {
@@ -55,19 +55,18 @@ class WholeCores {
   ThreadTeam team_;
 };
 
-/// Of the rounds in which cores were whole. Medians, and the least and the largest gain; no numbers
-/// if there were none.
+/// Medians, minimum and maximum gain over the rounds with whole cores; NaN if there were none.
 struct ThreadGain {
   double one_ms = std::numeric_limits<double>::quiet_NaN();
   double several_ms = one_ms;
   double median = one_ms;
-  double least = one_ms;
-  double most = one_ms;
+  double min = one_ms;
+  double max = one_ms;
   std::size_t rounds = 0;
-  int all_rounds = 0;  ///< those with other cores, too
+  int all_rounds = 0;  ///< including the discarded ones
 };
 
-/// What an algorithm gains, in so many rounds with whole cores, or ten times as many of all kinds.
+/// The gain of an algorithm over `wanted` rounds with whole cores, or ten times as many in total.
 inline ThreadGain gainOfThreads(const std::string& id, int threads,
                                 std::span<const std::vector<Aabb>> frames, int wanted) {
   WholeCores cores(threads);
@@ -75,25 +74,25 @@ inline ThreadGain gainOfThreads(const std::string& id, int threads,
   contest.add("one", caseOf(id, AnswerKind::pairs, 1));
   contest.add("several", caseOf(id, AnswerKind::pairs, threads));
   ThreadGain gain;
-  std::vector<double> one;
-  std::vector<double> several;
+  std::vector<double> one_ms;
+  std::vector<double> several_ms;
   std::vector<double> gains;
   for (; gain.all_rounds < 10 * wanted && std::cmp_less(gains.size(), wanted); ++gain.all_rounds) {
     const bool whole_before = cores.areWhole();
     contest.run(1);
     if (!cores.areWhole() || !whole_before) continue;
-    one.push_back(contest.find("one").milliseconds.back());
-    several.push_back(contest.find("several").milliseconds.back());
-    gains.push_back(one.back() / several.back());
+    one_ms.push_back(contest.find("one").milliseconds.back());
+    several_ms.push_back(contest.find("several").milliseconds.back());
+    gains.push_back(one_ms.back() / several_ms.back());
   }
   gain.rounds = gains.size();
   if (gains.empty()) return gain;
-  const auto [least, most] = std::ranges::minmax(gains);
-  gain.one_ms = quantile(one, 0.5);
-  gain.several_ms = quantile(several, 0.5);
+  const auto [min, max] = std::ranges::minmax(gains);
+  gain.one_ms = quantile(one_ms, 0.5);
+  gain.several_ms = quantile(several_ms, 0.5);
   gain.median = quantile(gains, 0.5);
-  gain.least = least;
-  gain.most = most;
+  gain.min = min;
+  gain.max = max;
   return gain;
 }
 

@@ -1,5 +1,5 @@
-// What algorithms gain from threads, on unit cubes that are elsewhere in every frame. Prints each
-// gain beside its target, which is for two threads; exit status 1 if one is missed.
+// Speed-up of algorithms by threads, on unit cubes at new positions in every frame. Prints each
+// gain beside its target, which is for two threads; exit status 1 if a target is missed.
 //
 //   thread_ratios [THREADS [ROUNDS]]
 
@@ -40,8 +40,8 @@ bool measure(const Trial& trial, int threads, int rounds) {
   fmt::print(
       "{:14} {:>8}  {:9.2f} ms  {} threads {:9.2f} ms  {:5.2f}x [{:.2f}, {:.2f}] in {:>2} of {:>3} "
       "rounds with whole cores",
-      trial.id, trial.bodies, gain.one_ms, threads, gain.several_ms, gain.median, gain.least,
-      gain.most, gain.rounds, gain.all_rounds);
+      trial.id, trial.bodies, gain.one_ms, threads, gain.several_ms, gain.median, gain.min,
+      gain.max, gain.rounds, gain.all_rounds);
   const bool met = threads != 2 || !trial.target || gain.median >= *trial.target;
   fmt::print("{}\n", met ? "" : fmt::format("  MISSED {:.2f}", *trial.target));
   return met;
@@ -50,7 +50,7 @@ bool measure(const Trial& trial, int threads, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto run = [](int count, char** arguments) {
+  const auto benchmark = [](int count, char** arguments) {
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
     const int threads = count > 1 ? std::max(2, std::atoi(arguments[1])) : 2;
     const int rounds = count > 2 ? std::max(1, std::atoi(arguments[2])) : 9;
@@ -58,5 +58,5 @@ int main(int argc, char** argv) {
     for (const Trial& trial : trials()) met &= measure(trial, threads, rounds);
     return met ? EXIT_SUCCESS : EXIT_FAILURE;
   };
-  return runMain("thread_ratios", run, argc, argv);
+  return runMain("thread_ratios", benchmark, argc, argv);
 }

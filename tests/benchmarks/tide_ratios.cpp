@@ -1,11 +1,10 @@
-// What a frame costs by how many bodies move: a curve, `tide` beside others.
-// In each frame others move by up to half a unit on each axis, of unit cubes half their edge. The
-// contestants take turns frame by frame.
+// Frame time as a function of the number of moving bodies: a curve of `tide` beside others. In each
+// frame a new selection of bodies moves by up to half a unit on each axis: half the edge of a unit
+// cube. The contestants alternate frame by frame.
 //
 //   tide_ratios [BODIES [ROUNDS [KIND [ANSWER [ALGORITHM...]]]]]
 //
-// KIND: one of kinds_of_boxes.h; uniform where none is told. ANSWER: events, as where none is told,
-// or pairs.
+// KIND: a kind in kinds_of_boxes.h; default: uniform. ANSWER: events (default) or pairs.
 
 #include <fmt/format.h>
 
@@ -24,12 +23,12 @@ namespace {
 using namespace broadmark;
 using namespace broadmark::benchmarks;
 
-/// One point of each curve.
+/// Measures a point of each curve.
 void measure(std::span<const Aabb> boxes, std::uint32_t movers, int rounds,
              std::span<const Case> cases) {
   SomeMove world(boxes, movers);
   WorldContest contest;
-  for (const Case& each : cases) contest.add(each.algorithm.id, each, world);
+  for (const Case& entered : cases) contest.add(entered.algorithm.id, entered, world);
   contest.run(3, rounds);
   fmt::print("{:>9} of {:>9}", movers, boxes.size());
   for (const WorldContest::Entrant& entrant : contest.entrants()) {
@@ -52,7 +51,7 @@ int run(int argc, char** argv) {
   std::vector<Case> cases = {caseOf("tide", answer), caseOf("columns", answer)};
   for (int i = 5; i < argc; ++i) cases.push_back(caseOf(argv[i], answer));
   fmt::print("median us of a frame   ");
-  for (const Case& each : cases) fmt::print("  {:>12}", each.algorithm.id);
+  for (const Case& entered : cases) fmt::print("  {:>12}", entered.algorithm.id);
   fmt::print("\n");
 
   std::vector<std::uint32_t> movers = {0, 1, 10, 100};

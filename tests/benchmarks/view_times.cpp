@@ -1,5 +1,5 @@
-// How long a frame of the 3D view takes, by technique and number of bodies: with a camera that
-// turns (the bodies stay), and with bodies that move (as in playback). Prints; decides nothing.
+// Frame time of the 3D view, by technique and number of bodies: with a turning camera and static
+// bodies, and with moving bodies (as in playback). Only prints; has no targets.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -20,14 +20,14 @@ constexpr float kSide = 100;
 
 std::vector<Aabb> randomBoxes(std::size_t count) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<float> place(-0.48F * kSide, 0.48F * kSide);
+  std::uniform_real_distribution<float> coordinate(-0.48F * kSide, 0.48F * kSide);
   std::uniform_real_distribution<float> factor(0.5F, 1.5F);
   const float side = 0.5F * kSide / std::cbrt(static_cast<float>(count));
   std::vector<Aabb> boxes(count);
   for (Aabb& box : boxes) {
     const float half = factor(random) * side / 2;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float centre = place(random);
+      const float centre = coordinate(random);
       box.min[axis] = centre - half;
       box.max[axis] = centre + half;
     }
@@ -35,7 +35,7 @@ std::vector<Aabb> randomBoxes(std::size_t count) {
   return boxes;
 }
 
-/// The median of what work(i) takes, in milliseconds.
+/// The median time of work(i), in milliseconds.
 template <class Work>
 double medianOf(int repetitions, const Work& work) {
   using Clock = std::chrono::steady_clock;

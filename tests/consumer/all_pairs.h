@@ -1,4 +1,4 @@
-// A broad phase of one's own: tests each box against each.
+// A custom broad phase that tests every pair of boxes.
 #pragma once
 
 #include <broadmark/broad_phase.h>

@@ -27,7 +27,7 @@ run("${WORK_DIR}/prefix/bin/broadmark" --headless brownian --objects 50 --frames
   --engine drift --algorithm Mine --threads 3
   --json "${WORK_DIR}/results.json")
 
-# Nobody has chosen a build type: a plug-in is optimised nevertheless, and says how it was built.
+# Without a build type a plug-in is still optimised, and reports how it was built.
 file(READ "${WORK_DIR}/results.json" results)
 string(JSON flags GET "${results}" cases 0 conditions plugin flags)
 if(NOT flags MATCHES ", optimised.*: .*-O3")

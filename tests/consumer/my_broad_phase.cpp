@@ -1,5 +1,5 @@
-// A broad phase of one's own, run, checked and timed beside Broadmark's: on frames of one's own,
-// and on a scene that Broadmark simulates.
+// Runs, checks and times a custom broad phase beside Broadmark's, on custom frames and on a scene
+// that Broadmark simulates.
 
 #include <broadmark/algorithms.h>
 #include <broadmark/harness/runner.h>
@@ -15,7 +15,7 @@
 
 namespace {
 
-/// Unit boxes that jump about: frames can come from anywhere.
+/// Unit boxes at random positions: an example of a custom frame source.
 class JumpingBoxes : public broadmark::FrameSource {
  public:
   JumpingBoxes()
@@ -46,7 +46,7 @@ class JumpingBoxes : public broadmark::FrameSource {
   std::uint32_t index_ = 0;
 };
 
-/// Runs every algorithm on these frames. Returns whether all were right and found something.
+/// Runs every algorithm on these frames. Returns whether all were correct and found pairs.
 bool allRight(const std::vector<broadmark::Algorithm>& algorithms, broadmark::FrameSource& frames) {
   bool right = true;
   for (const auto& algorithm : algorithms) {

@@ -1,5 +1,5 @@
-// A physics engine of one's own, as a library that Broadmark loads: bodies drift about and turn
-// back at the walls.
+// A custom physics engine, as a library that Broadmark loads: bodies drift and bounce off the
+// walls.
 
 #include <broadmark/scenes/body_pool.h>
 #include <broadmark/scenes/engine_plugin.h>
@@ -33,14 +33,14 @@ class DriftingBody : public PhysicsBody {
     velocity_ = {};
   }
 
-  /// Moves on for a time.
+  /// Advances by `time`.
   void drift(float time, const std::vector<HalfSpace>& walls) {
     for (std::size_t axis = 0; axis < 3; ++axis) pose_.position[axis] += time * velocity_[axis];
     for (const HalfSpace& wall : walls) turnBack(wall);
   }
 
  private:
-  /// At a wall that its centre is behind. Walls stand across an axis.
+  /// Bounces off a wall if its centre is behind it. Walls are perpendicular to an axis.
   void turnBack(const HalfSpace& wall) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float side = wall.normal[axis];
@@ -80,7 +80,7 @@ class DriftingEngine final : public PhysicsEngine {
   }
 
  private:
-  float time_;  ///< of a step
+  float time_;  ///< per step
   double drift_ = 1;
   Vec3 gravity_{};
   std::vector<HalfSpace> walls_;

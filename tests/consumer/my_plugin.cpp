@@ -1,4 +1,4 @@
-// A broad phase of one's own, as a library that Broadmark loads.
+// A custom broad phase, as a library that Broadmark loads.
 
 #include <broadmark/plugin.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Tests each box against each, with the boxes as arrays, on all threads.
+/// Tests every pair of boxes, with the boxes as arrays, on all threads.
 class ParallelAllPairs final : public broadmark::SimdBroadPhase {
   void findPairs() override {
     team().run([&](int worker) {

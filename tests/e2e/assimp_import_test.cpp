@@ -1,4 +1,4 @@
-// The pairs of real meshes, as continuous collision detection takes them: known to the last one.
+// Exact pair counts of real meshes, as used in continuous collision detection.
 
 #include "e2e/end_to_end.h"
 #include "support/places.h"
@@ -9,7 +9,7 @@ namespace {
 using AssimpImport = EndToEnd;
 
 TEST_F(AssimpImport, PairsOfSweptEdgesAreThoseKnown) {
-  // An excerpt of rod-twist: of 7,847 pairs 1,048 share a vertex, as NumPy counts them.
+  // An excerpt of rod-twist: 1,048 of 7,847 pairs share a vertex, as counted with NumPy.
   const std::string frames = (places::source("tests/data") / "rod-twist-*.ply").string();
   const Arguments call = {"--headless",  frames, "--swept", "--elements", "edges",
                           "--algorithm", "all",  "--check", "full",       "--json"};
@@ -22,7 +22,7 @@ TEST_F(AssimpImport, PairsOfSweptEdgesAreThoseKnown) {
   };
   for (const Json& result : run_into("wanted.json")) {
     EXPECT_EQ(result["status"], "ok") << result["id"];
-    if (result["algorithm"] != "bf") continue;  // others may report more
+    if (result["algorithm"] != "bf") continue;  // other algorithms may report extra pairs
     EXPECT_EQ(result["frame_counts"]["pairs"][0], 7847 - 1048);
   }
   for (const Json& result : run_into("all.json", {"--keep", "shared-vertices"})) {

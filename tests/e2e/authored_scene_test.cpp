@@ -1,4 +1,4 @@
-// Authored scenes as sources: run, baked, baked anew when they change, refused when they are wrong.
+// Authored scenes as sources: run, baked, baked again after a change, rejected if invalid.
 
 #include "e2e/end_to_end.h"
 #include "support/places.h"
@@ -26,7 +26,7 @@ class AuthoredScenes : public EndToEnd {
     writeFile(file("my scene.json"), text + "]}");
   }
 
-  Ended bake(const std::string& output, Arguments more = {}) const {
+  ProgramResult bake(const std::string& output, Arguments more = {}) const {
     Arguments call = {"bake", "--parameters", "my scene.json", "--output", output};
     call.insert(call.end(), more.begin(), more.end());
     return runQuietly(call);
@@ -36,8 +36,8 @@ class AuthoredScenes : public EndToEnd {
 const std::string kName = "Mine Assorted N6 F6frames";
 
 TEST_F(AuthoredScenes, RunLikeBuiltInOnes) {
-  const Ended ended = runQuietly({"--headless", "my scene.json", "--algorithm", "sap,bf",
-                                  "--record", "kept", "--json", "results.json"});
+  const ProgramResult ended = runQuietly({"--headless", "my scene.json", "--algorithm", "sap,bf",
+                                          "--record", "kept", "--json", "results.json"});
   EXPECT_THAT(ended.out, StartsWith("Mine Assorted, 6 bodies, 6 frames\n"));
   const Json first = readJson(file("results.json")).at("cases").at(0);
   EXPECT_EQ(first.at("status"), "ok");
@@ -46,7 +46,7 @@ TEST_F(AuthoredScenes, RunLikeBuiltInOnes) {
   EXPECT_EQ(source.at("scene_file"), "my scene.json");
   EXPECT_EQ(source.at("frames"), "6");
   EXPECT_EQ(first.at("recording").at("seed"), nullptr);
-  const Ended verified = runQuietly({"verify", recordingIn("kept", kName)});
+  const ProgramResult verified = runQuietly({"verify", recordingIn("kept", kName)});
   EXPECT_THAT(verified.out, HasSubstr("as baked"));
 }
 
@@ -86,11 +86,11 @@ TEST_F(AuthoredScenes, OptionsOverrideParameters) {
       readJson(file("out/Recordings_AABBs/Mine Assorted N6 F9frames.json")).at("parameters");
   EXPECT_EQ(parameters.at("engine"), "kinematic");
   EXPECT_EQ(parameters.at("gravity_y"), 3);
-  const Ended listed = runQuietly(
+  const ProgramResult listed = runQuietly(
       {"--headless", "my scene.json", "freefall", "--frames", "4", "--algorithm", "sap", "--list"});
   EXPECT_EQ(linesOf(listed.out).size(), 2U) << listed.out;
   EXPECT_THAT(listed.out, HasSubstr("Mine"));
-  const Ended batch =
+  const ProgramResult batch =
       runQuietly({"bake", "--scenes", "freefall", "--parameters", "my scene.json", "--frames", "4",
                   "--engine", "boids", "--param", "sight=2", "--output", "out", "--list"});
   EXPECT_EQ(linesOf(batch.out).size(), 3U) << batch.out;
@@ -112,7 +112,7 @@ TEST_F(AuthoredScenes, AreNeverWrittenOver) {
   const std::string text = readFile(file("my scene.json"));
   expectRefusal({"--headless", "my scene.json", "--algorithm", "sap", "--json", "my scene.json"},
                 {"--json", "my scene.json"});
-  // Where the sidecar of its recording would lie.
+  // The path of its recording's sidecar.
   const std::string beside = "out/Recordings_AABBs/" + kName + ".json";
   fs::create_directories(file("out/Recordings_AABBs"));
   writeFile(file(beside), text);
@@ -150,7 +150,7 @@ TEST_F(AuthoredScenes, BadOnesAreRefused) {
 
 TEST_F(AuthoredScenes, TheExampleRuns) {
   const fs::path example = places::source("assets/scenes/dominoes.json");
-  const Ended ended = runQuietly(
+  const ProgramResult ended = runQuietly(
       {"--headless", example.string(), "--frames", "10", "--algorithm", "sap-simd,grid-bf"});
   EXPECT_THAT(ended.out, StartsWith("Dominoes Assorted, 41 bodies, 10 frames\n"));
 }

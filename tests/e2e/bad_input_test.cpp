@@ -1,5 +1,5 @@
-// Bad input: exit status 2 and one line that names what is wrong and what would be right; nothing
-// is written.
+// Bad input: exit status 2, one line that names the error and the valid input, and no written
+// files.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ namespace {
 
 class BadInput : public EndToEnd {
  protected:
-  /// A small run with more arguments is refused.
+  /// Expects that a small run rejects these further arguments.
   void expectRunRefused(const Arguments& more, const std::vector<std::string>& words) const {
     Arguments call = {"--headless", "freefall", "--objects", "20",          "--frames", "3",
                       "--quiet",    "--json",   "no.json",   "--algorithm", "sap"};
@@ -23,7 +23,7 @@ class BadInput : public EndToEnd {
     expectRefusal(call, words);
   }
 
-  /// A file with these bytes is refused as a source and by verify.
+  /// Expects that a file with these bytes is rejected as a source and by verify.
   void expectFileRefused(const std::string& bytes, const std::vector<std::string>& words) const {
     writeFile(file("bad file.aabbs"), bytes);
     std::vector<std::string> all = words;
@@ -31,14 +31,14 @@ class BadInput : public EndToEnd {
     Arguments call = {"--headless", "bad file.aabbs", "--json", "no.json", "--quiet"};
     if (parts::kRenderer.included) call.insert(call.end(), {"--screenshot", "no.png"});
     expectRefusal(call, all);
-    const Ended verified = run({"verify", "bad file.aabbs"});
+    const ProgramResult verified = run({"verify", "bad file.aabbs"});
     EXPECT_EQ(verified.status, 2);
     EXPECT_EQ(linesOf(verified.err).size(), 1U) << verified.err;
     for (const std::string& word : all) EXPECT_THAT(verified.err, HasSubstr(word));
   }
 };
 
-// What the parser refuses by itself is tested in tests/app/command_line_test.cpp.
+// tests/app/command_line_test.cpp tests the errors of the parser.
 TEST_F(BadInput, UnknownNamesAreSuggested) {
   expectRunRefused({"--algoritm", "sap"}, {"'--algoritm'", "'--algorithm'"});
   expectRunRefused({"--algorithm", "sapp"}, {"--algorithm", "'sapp'", "'sap'"});
@@ -72,7 +72,7 @@ TEST_F(BadInput, NumbersOutOfRange) {
 }
 
 TEST_F(BadInput, IncompleteCalls) {
-  const Surroundings no_display{.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}};
+  const ProgramEnvironment no_display{.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}};
   expectRefusal({}, {"--headless"}, no_display);
   expectRefusal({"freefall"}, {"--headless"}, no_display);
   expectRefusal({"freefal"}, {"'freefal'", "'freefall'"}, no_display);
@@ -132,7 +132,7 @@ TEST_F(BadInput, RecordingsThatLieAboutTheirCounts) {
   expectFileRefused(recordingOf(-1, 2, unitBoxes(3)), {"negative", "-1", "byte 256"});
   expectFileRefused(recordingOf(1, -2, unitBoxes(3)), {"negative", "-2", "byte 260"});
   expectFileRefused(recordingOf(1 << 30, 2, unitBoxes(3)), {"too short"});
-  // 2^30 objects and 2^29 sets are 2^64 bytes: 0, to those who multiply carelessly.
+  // 2^30 objects in 2^29 sets have 2^64 bytes: 0 if the multiplication overflows.
   expectFileRefused(recordingOf(1 << 30, (1 << 29) - 1, {}), {"too short"});
   expectFileRefused(recordingOf(0, std::numeric_limits<std::int32_t>::max(), {}), {"frames"});
 }
@@ -171,7 +171,7 @@ TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
   writeFile(file("plain"), "");
   fs::create_directory(file("folder.png"));
   ASSERT_EQ(::mkfifo(file("fifo.png").c_str(), 0600), 0);
-  // As large and long as this is, only an early complaint ever comes.
+  // Because of its size, the test ends only if the input is rejected early.
   const auto refused = [&](const Arguments& more, const std::vector<std::string>& words) {
     Arguments call = {"--headless", "gravity", "--objects", "100000",
                       "--frames",   "100000",  "--quiet"};

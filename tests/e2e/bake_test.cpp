@@ -1,4 +1,4 @@
-// Baking, verifying and the recordings' promises.
+// Baking and verifying recordings.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ Arguments bakeCall(const Arguments& more = {}) {
   return call;
 }
 
-/// What follows `word` on the lines that begin with it.
+/// The rest of each line that begins with `word`.
 std::vector<std::string> pathsAfter(const std::string& word, const std::string& output) {
   std::vector<std::string> paths;
   for (const std::string& line : linesOf(output)) {
@@ -30,7 +30,7 @@ std::vector<std::string> pathsAfter(const std::string& word, const std::string& 
 }
 
 TEST_F(Bake, EveryCombinationIsBakedAndSound) {
-  const Ended baked =
+  const ProgramResult baked =
       runQuietly({"bake", "--scenes", "freefall,brownian,gravity", "--objects", "30,10,20",
                   "--object-type", "cubes", "--frames", "4", "--output", "deep/er/out"});
   const auto files = pathsAfter("baked  ", baked.out);
@@ -45,7 +45,7 @@ TEST_F(Bake, EveryCombinationIsBakedAndSound) {
               StartsWith(fmt::format("9 baked, 0 kept; {} bytes", 9 * 304 + 3 * 5 * 32 * 60)));
   Arguments verify = {"verify"};
   verify.insert(verify.end(), files.begin(), files.end());
-  const Ended verified = run(verify);
+  const ProgramResult verified = run(verify);
   EXPECT_EQ(verified.status, 0) << verified.err;
   EXPECT_EQ(verified.err, "");
   EXPECT_EQ(linesOf(verified.out).size(), 9U);
@@ -74,7 +74,7 @@ TEST_F(Bake, ThreadsChangeNothing) {
 }
 
 TEST_F(Bake, ACombinationNamedTwiceIsBakedOnce) {
-  const Ended ended =
+  const ProgramResult ended =
       runQuietly({"bake", "--scenes", "freefall,FreeFall", "--objects", "5,5", "--object-type",
                   "cubes,cubes", "--frames", "2", "--output", "out"});
   EXPECT_EQ(pathsAfter("baked  ", ended.out).size(), 1U) << ended.out;
@@ -83,24 +83,25 @@ TEST_F(Bake, ACombinationNamedTwiceIsBakedOnce) {
 TEST_F(Bake, ListTellsWhatWouldBeDone) {
   const Arguments call = bakeCall({"--list"});
   const std::string size = std::to_string(304 + 32 * 40 * 9);
-  const Ended before = runQuietly(call);
+  const ProgramResult before = runQuietly(call);
   EXPECT_THAT(
       linesOf(before.out),
       ElementsAre(AllOf(StartsWith("bake "), HasSubstr(" " + size + " "), HasSubstr(kBaked)),
                   "1 recording: 1 to bake (" + size + " bytes), 0 kept"));
   EXPECT_THAT(entries(), IsEmpty());
   runQuietly(bakeCall());
-  const Ended after = runQuietly(call);
+  const ProgramResult after = runQuietly(call);
   EXPECT_THAT(after.out, StartsWith("kept "));
   EXPECT_THAT(after.out, HasSubstr("1 recording: 0 to bake (0 bytes), 1 kept"));
   EXPECT_THAT(runQuietly(bakeCall({"--list", "--force"})).out, StartsWith("bake "));
 }
 
 TEST_F(Bake, AFailedOneDoesNotStopTheOthers) {
-  // The largest does not fit below the limit on a file's size.
-  const Ended ended = run({"bake", "--scenes", "freefall", "--objects", "5,9,200", "--frames", "10",
-                           "--output", "out", "--quiet", "--threads", "1"},
-                          {.largest_file = 20'000});
+  // The largest recording exceeds the limit on a file's size.
+  const ProgramResult ended =
+      run({"bake", "--scenes", "freefall", "--objects", "5,9,200", "--frames", "10", "--output",
+           "out", "--quiet", "--threads", "1"},
+          {.max_file_bytes = 20'000});
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("N200 F10frames.aabbs: cannot write"));
@@ -109,7 +110,7 @@ TEST_F(Bake, AFailedOneDoesNotStopTheOthers) {
 }
 
 TEST_F(Bake, PlainProgressEndsWithALine) {
-  const Ended ended = run(bakeCall());
+  const ProgramResult ended = run(bakeCall());
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(linesOf(ended.err), ElementsAre(StartsWith("baking 1 recording: done (")));
 }
@@ -139,7 +140,7 @@ TEST_F(Bake, WhatIsThereIsKeptUnlessForced) {
 TEST_F(Bake, AnotherRecordingIsReplacedOnlyWhenForced) {
   runQuietly(bakeCall());
   const std::string bytes = readFile(file(kBaked));
-  const Ended refused = run(bakeCall({"--seed", "2"}));
+  const ProgramResult refused = run(bakeCall({"--seed", "2"}));
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, AllOf(HasSubstr(kBaked), HasSubstr("--force")));
   EXPECT_EQ(readFile(file(kBaked)), bytes);
@@ -179,13 +180,13 @@ TEST_F(Bake, PosesAreRecordedBesideBoxesWhenAskedFor) {
   runQuietly(bakeCall());
   EXPECT_FALSE(fs::exists(file(kBakedPoses)));
   const std::string boxes = readFile(file(kBaked));
-  const Ended baked = runQuietly(bakeCall({"--recorder", "aabbs,posrot"}));
+  const ProgramResult baked = runQuietly(bakeCall({"--recorder", "aabbs,posrot"}));
   EXPECT_THAT(baked.out,
               StartsWith("kept   " + kBaked + "\nbaked  " + kBakedPoses + "\n1 baked, 1 kept; "));
   EXPECT_EQ(readFile(file(kBaked)), boxes);
   EXPECT_EQ(fs::file_size(file(kBakedPoses)), boxes.size());
 
-  const Ended verified = run({"verify", kBakedPoses});
+  const ProgramResult verified = run({"verify", kBakedPoses});
   EXPECT_EQ(verified.status, 0) << verified.err;
   EXPECT_THAT(verified.out, HasSubstr(", as baked\n"));
   const Json sidecar = readJson(file(fs::path(kBakedPoses).replace_extension(".json")));
@@ -233,7 +234,7 @@ TEST_F(Bake, ReplaysMakeRecordingsOfRecordings) {
   const fs::path sidecar = file(fs::path(files.front()).replace_extension(".json"));
   EXPECT_THAT(run({"verify", kBakedPoses}).out,
               HasSubstr(readJson(sidecar).at("input_hash").get<std::string>()));
-  // As a scene it lacks only its input.
+  // Used as a scene, it lacks only its input.
   expectRefusal({"bake", "--parameters", sidecar.string(), "--output", "new"}, {"--input"});
   runQuietly({"bake", "--parameters", sidecar.string(), "--input", "out dir", "--output", "new"});
   EXPECT_EQ(readFile(file(recordingIn("new", "FreeFall Cubes N320 F6frames"))),
@@ -278,7 +279,7 @@ TEST_F(Bake, HeadlessKeepsTheRecordingsAskedFor) {
 TEST_F(Bake, VerifyNamesEveryBrokenFileAndPassesTheRest) {
   bakeRecording("good.aabbs");
   writeFile(file("bad.aabbs"), readFile(file("good.aabbs")).substr(0, 1000));
-  const Ended ended = run({"verify", "bad.aabbs", "good.aabbs", "missing.aabbs"});
+  const ProgramResult ended = run({"verify", "bad.aabbs", "good.aabbs", "missing.aabbs"});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.out, HasSubstr("good.aabbs: ok"));
   const auto complaints = linesOf(ended.err);

@@ -1,4 +1,4 @@
-// Scenes whose bodies come and go, have layers or worlds: simulated for a run, baked, run again.
+// Scenes with appearing and vanishing bodies, layers or worlds: simulated for a run, baked, rerun.
 
 #include <algorithm>
 
@@ -11,13 +11,13 @@ namespace {
 
 class ChangingScenes : public EndToEnd {
  protected:
-  /// Every algorithm must find all pairs of this source.
+  /// Expects that every algorithm finds all pairs of this source.
   void expectAllRight(const std::string& source, Arguments more = {}) const {
     SCOPED_TRACE(source);
     Arguments call = {"--headless", source,    "--algorithm",   "all", "--json",
                       "r.json",     "--quiet", "--repetitions", "1"};
     call.insert(call.end(), more.begin(), more.end());
-    const Ended ended = run(call);
+    const ProgramResult ended = run(call);
     const bool lacks_a_device =
         computeDevices().empty() &&
         std::ranges::any_of(builtinAlgorithms(),
@@ -52,8 +52,8 @@ TEST_F(ChangingScenes, AreBakedIntoRecordingsThatHoldThem) {
     EXPECT_THAT(runQuietly({"verify", name}).out, HasSubstr("as baked")) << name;
   }
   EXPECT_THAT(kinds, ElementsAre("Fou.broadmark", "Sho.broadmark", "Spo.aabbs", "Wor.broadmark"));
-  const Ended again = runQuietly({"bake", "--scenes", "fountain,shooter,worlds,spot", "--objects",
-                                  "120", "--frames", "12", "--output", "out"});
+  const ProgramResult again = runQuietly({"bake", "--scenes", "fountain,shooter,worlds,spot",
+                                          "--objects", "120", "--frames", "12", "--output", "out"});
   EXPECT_THAT(again.out, HasSubstr("0 baked, 4 kept"));
 }
 

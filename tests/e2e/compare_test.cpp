@@ -14,17 +14,17 @@ class Compare : public EndToEnd {
     ASSERT_EQ(results_.at("cases").size(), 3U);
   }
 
-  /// Writes the results, changed by hand, and compares them with the real ones.
-  Ended compareWith(const Json& after, const Arguments& more = {}) const {
+  /// Writes modified results, and compares them with the original ones.
+  ProgramResult compareWith(const Json& after, const Arguments& more = {}) const {
     writeFile(file("after.json"), after.dump());
     Arguments call = {"compare", "before.json", "after.json"};
     call.insert(call.end(), more.begin(), more.end());
     return run(call);
   }
 
-  /// Makes all times of a case a thousand times as long: far beyond any noise.
-  static void slowDown(Json& one) {
-    for (Json& phase : one.at("frames")) {
+  /// Multiplies all times of a case by a thousand, far beyond any noise.
+  static void slowDown(Json& result) {
+    for (Json& phase : result.at("frames")) {
       for (Json& pass : phase) {
         for (Json& ns : pass) ns = ns.get<std::int64_t>() * 1000 + 1000;
       }
@@ -42,7 +42,7 @@ class Compare : public EndToEnd {
 };
 
 TEST_F(Compare, WithItself) {
-  const Ended ended = run({"compare", "before.json", "before.json"});
+  const ProgramResult ended = run({"compare", "before.json", "before.json"});
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err, "");
   const auto lines = linesOf(ended.out);
@@ -55,16 +55,16 @@ TEST_F(Compare, WithItself) {
 TEST_F(Compare, ASlowerCaseIsARegression) {
   Json after = results_;
   slowDown(after.at("cases").at(1));
-  const Ended slower = compareWith(after);
+  const ProgramResult slower = compareWith(after);
   EXPECT_EQ(slower.status, 3);
   const std::string id = after.at("cases").at(1).at("id");
   EXPECT_THAT(lineWith(slower.out, id), HasSubstr("REGRESSED"));
 
-  const Ended tolerated = compareWith(after, {"--fail-above", "1e9"});
+  const ProgramResult tolerated = compareWith(after, {"--fail-above", "1e9"});
   EXPECT_EQ(tolerated.status, 0);
   EXPECT_THAT(lineWith(tolerated.out, id), HasSubstr("slower"));
 
-  const Ended faster = run({"compare", "after.json", "before.json"});
+  const ProgramResult faster = run({"compare", "after.json", "before.json"});
   EXPECT_EQ(faster.status, 0);
   EXPECT_THAT(lineWith(faster.out, id), HasSubstr("faster"));
 }
@@ -73,13 +73,13 @@ TEST_F(Compare, ACaseThatBecameWrongIsARegression) {
   Json after = results_;
   after.at("cases").at(0).at("status") = "mismatch";
   after.at("cases").at(0).at("reason") = "frame 1: 1 missed";
-  const Ended worse = compareWith(after);
+  const ProgramResult worse = compareWith(after);
   EXPECT_EQ(worse.status, 1);
   EXPECT_THAT(worse.out, HasSubstr("ok -> mismatch REGRESSED"));
-  const Ended better = run({"compare", "after.json", "before.json"});
+  const ProgramResult better = run({"compare", "after.json", "before.json"});
   EXPECT_EQ(better.status, 0);
   EXPECT_THAT(better.out, HasSubstr("mismatch -> ok"));
-  const Ended neither = run({"compare", "after.json", "after.json"});
+  const ProgramResult neither = run({"compare", "after.json", "after.json"});
   EXPECT_EQ(neither.status, 0);
   EXPECT_THAT(neither.out, HasSubstr("mismatch in both"));
 }
@@ -87,13 +87,13 @@ TEST_F(Compare, ACaseThatBecameWrongIsARegression) {
 TEST_F(Compare, OtherRecordingsAreNotComparable) {
   Json after = results_;
   after.at("cases").at(2).at("recording").at("hash") = "0123";
-  const Ended partly = compareWith(after);
+  const ProgramResult partly = compareWith(after);
   EXPECT_EQ(partly.status, 0);
   EXPECT_THAT(lineWith(partly.out, after.at("cases").at(2).at("id")), HasSubstr("other recording"));
 
-  // Nothing compared is nothing passed.
-  for (Json& one : after.at("cases")) one.at("recording").at("hash") = "0123";
-  const Ended wholly = compareWith(after);
+  // A comparison without common cases fails.
+  for (Json& result : after.at("cases")) result.at("recording").at("hash") = "0123";
+  const ProgramResult wholly = compareWith(after);
   EXPECT_EQ(wholly.status, 2);
   EXPECT_EQ(linesOf(wholly.err).size(), 1U);
   EXPECT_THAT(wholly.err, HasSubstr("after.json"));
@@ -103,11 +103,11 @@ TEST_F(Compare, MissingCasesFailUnlessAllowed) {
   Json after = results_;
   const std::string gone = after.at("cases").at(0).at("id");
   after.at("cases").erase(0);
-  const Ended ended = compareWith(after);
+  const ProgramResult ended = compareWith(after);
   EXPECT_EQ(ended.status, 3);
   EXPECT_THAT(lineWith(ended.out, gone), HasSubstr("missing"));
   EXPECT_EQ(compareWith(after, {"--allow-missing"}).status, 0);
-  const Ended added = run({"compare", "after.json", "before.json"});
+  const ProgramResult added = run({"compare", "after.json", "before.json"});
   EXPECT_EQ(added.status, 0);
   EXPECT_THAT(lineWith(added.out, gone), HasSubstr("added"));
 }
@@ -115,14 +115,15 @@ TEST_F(Compare, MissingCasesFailUnlessAllowed) {
 TEST_F(Compare, PairsAreNotComparedWithEvents) {
   runQuietly({"--headless", "freefall", "--objects", "60", "--frames", "8", "--algorithm",
               "sap,bf,sap-simd", "--answer", "events", "--json", "events.json"});
-  const Ended ended = run({"compare", "before.json", "events.json"});
+  const ProgramResult ended = run({"compare", "before.json", "events.json"});
   EXPECT_EQ(ended.status, 2) << "nothing in common";
   EXPECT_THAT(lineWith(ended.out, "/bf/events"), HasSubstr("added"));
   EXPECT_EQ(run({"compare", "before.json", "events.json", "--by", "answer"}).status, 2);
 }
 
 TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
-  const Ended ended = run({"compare", "before.json", "--by", "algorithm", "--fail-above", "1e9"});
+  const ProgramResult ended =
+      run({"compare", "before.json", "--by", "algorithm", "--fail-above", "1e9"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(linesOf(ended.out).back(), testing::StartsWith("2 cases: "));
   EXPECT_THAT(ended.out, HasSubstr(" against "));
@@ -133,8 +134,9 @@ TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
 TEST_F(Compare, WritesWhatOtherProgramsRead) {
   Json after = results_;
   slowDown(after.at("cases").at(1));
-  const Ended ended = compareWith(after, {"--json", "c.json", "--csv", "c.csv", "--junit", "c.xml",
-                                          "--markdown", "c.md", "--github", "c.txt"});
+  const ProgramResult ended =
+      compareWith(after, {"--json", "c.json", "--csv", "c.csv", "--junit", "c.xml", "--markdown",
+                          "c.md", "--github", "c.txt"});
   EXPECT_EQ(ended.status, 3);
   const Json comparison = readJson(file("c.json"));
   EXPECT_EQ(comparison.at("cases").at(1).at("verdict"), "REGRESSED");
@@ -146,8 +148,8 @@ TEST_F(Compare, WritesWhatOtherProgramsRead) {
 }
 
 TEST_F(Compare, SeveralBaselines) {
-  const Ended ended = run({"compare", "before.json", "before.json", "--baseline", "before.json",
-                           "--baseline", "before.json"});
+  const ProgramResult ended = run({"compare", "before.json", "before.json", "--baseline",
+                                   "before.json", "--baseline", "before.json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("3 cases: "));
 }

@@ -1,4 +1,4 @@
-// Recordings of one kind made into another; .broadmark recordings wherever .aabbs ones go.
+// Conversion between formats of recordings; .broadmark recordings wherever .aabbs is accepted.
 
 #include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
@@ -17,7 +17,7 @@ class Convert : public EndToEnd {
     boxes_ = recordingIn("out", kStem);
   }
 
-  /// A recording whose body 1 is absent in frame 1, if `absent`.
+  /// A recording; `absent`: whether body 1 is absent in frame 1.
   void writeChanging(const std::string& name, bool absent) const {
     RecordingWriter writer(file(name), {.name = "Changing",
                                         .object_type = "Boxes",
@@ -30,7 +30,7 @@ class Convert : public EndToEnd {
     writer.finish();
   }
 
-  /// Pairs and status of each case on a recording.
+  /// The pairs and the status of each case on a recording.
   [[nodiscard]] Json answersOn(const std::string& source) const {
     runQuietly({"--headless", source, "--algorithm", "bf,sap,kd", "--time-limit", "100", "--json",
                 "r.json"});
@@ -47,7 +47,7 @@ class Convert : public EndToEnd {
 
 TEST_F(Convert, ThereAndBackIsTheSameFile) {
   runQuietly({"convert", boxes_, "there.broadmark"});
-  const Ended ended = runQuietly({"convert", "there.broadmark", "back.aabbs"});
+  const ProgramResult ended = runQuietly({"convert", "there.broadmark", "back.aabbs"});
   EXPECT_EQ(readFile(file("back.aabbs")), readFile(file(boxes_)));
   EXPECT_THAT(ended.out, AllOf(StartsWith("back.aabbs: "), HasSubstr("hash ")));
   EXPECT_LT(fs::file_size(file("there.broadmark")) * 5, fs::file_size(file(boxes_)));
@@ -58,7 +58,7 @@ TEST_F(Convert, ThereAndBackIsTheSameFile) {
 }
 
 TEST_F(Convert, BakedBesideAabbsItHoldsTheSame) {
-  const Ended verified = run({"verify", kChanging, boxes_});
+  const ProgramResult verified = run({"verify", kChanging, boxes_});
   EXPECT_EQ(verified.status, 0) << verified.err;
   EXPECT_THAT(verified.out, HasSubstr(kStem + ".broadmark: ok: City Cubes"));
   EXPECT_THAT(linesOf(verified.out)[0], HasSubstr(", as baked"));
@@ -76,7 +76,7 @@ TEST_F(Convert, TheSamePairsAreFound) {
   const Json answers = answersOn(boxes_);
   EXPECT_EQ(answersOn(kChanging), answers);
   EXPECT_EQ(readJson(file("r.json")).at("cases").at(0).at("recording").at("source"), kChanging);
-  // The engine viewer and the original's settings read it, too.
+  // The viewer engine and settings of the original also accept it.
   runQuietly({"bake", "--scenes", "city", "--objects", "200", "--engine", "viewer", "--input",
               "out/Recordings_Broadmark", "--output", "again"});
   EXPECT_EQ(readFile(file(recordingIn("again", kStem))), readFile(file(boxes_)));

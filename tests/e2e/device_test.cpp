@@ -1,4 +1,4 @@
-// Compute devices from outside: listed, chosen, absent.
+// Compute devices: listing, selection and absence.
 
 #include "broadmark/compute_devices.h"
 #include "e2e/end_to_end.h"
@@ -11,14 +11,14 @@ class Device : public EndToEnd {
   void SetUp() override {
     if (computeDevices().empty()) GTEST_SKIP() << "no OpenCL device";
   }
-  /// A short run of an algorithm on a device and of one that needs none.
+  /// A short run of an algorithm on a device and of another on the CPU.
   const Arguments short_run_ = {"--headless", "freefall", "--objects",   "50",
                                 "--frames",   "2",        "--algorithm", "gpu-sap,sap",
                                 "--json",     "r.json",   "--quiet"};
 };
 
 TEST_F(Device, AreListed) {
-  const Ended ended = run({"list", "devices"});
+  const ProgramResult ended = run({"list", "devices"});
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(onOneLine(ended.out), HasSubstr("0: " + describe(computeDevices().front())));
 }
@@ -41,7 +41,8 @@ TEST_F(Device, UnknownOnesAreRefused) {
 }
 
 TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
-  const Ended ended = run(short_run_, {.environment = {{"OCL_ICD_VENDORS", "/nonexistent/"}}});
+  const ProgramResult ended =
+      run(short_run_, {.environment = {{"OCL_ICD_VENDORS", "/nonexistent/"}}});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Json results = readJson(file("r.json"));
   EXPECT_THAT(results.at("environments").at(0).at("compute_devices"), IsEmpty());
@@ -58,7 +59,8 @@ TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
   for (const ComputeDevice& device : computeDevices()) {
     if (device.platform != "Portable Computing Language") GTEST_SKIP() << "there are other devices";
   }
-  const Ended ended = run(short_run_, {.environment = {{"POCL_CACHE_DIR", "/proc/nonexistent"}}});
+  const ProgramResult ended =
+      run(short_run_, {.environment = {{"POCL_CACHE_DIR", "/proc/nonexistent"}}});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Json results = readJson(file("r.json"));
   for (const Json& result : results.at("cases")) {
@@ -70,11 +72,11 @@ TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
   }
 }
 
-// They have warnings; and nobody has asked for a count of them.
+// Building these kernels causes warnings, but their count must not be printed.
 TEST_F(Device, BulletsKernelsAreBuiltInSilence) {
-  const Ended ended = run({"--headless", "brownian", "--objects", "50", "--frames", "1",
-                           "--algorithm", "b3-sap", "--quiet"},
-                          {.environment = {{"POCL_CACHE_DIR", file("kernels").string()}}});
+  const ProgramResult ended = run({"--headless", "brownian", "--objects", "50", "--frames", "1",
+                                   "--algorithm", "b3-sap", "--quiet"},
+                                  {.environment = {{"POCL_CACHE_DIR", file("kernels").string()}}});
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err, "");
 }

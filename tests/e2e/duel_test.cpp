@@ -1,4 +1,4 @@
-// Duels of the real program.
+// The command 'duel'.
 
 #include "e2e/end_to_end.h"
 #include "support/places.h"
@@ -21,8 +21,9 @@ class Duel : public EndToEnd {
 };
 
 TEST_F(Duel, TellsTheFasterOne) {
-  const Ended ended = run(duelOf({"time-validator/phase_us=100", "time-validator/phase_us=200"},
-                                 {"--precision", "5%", "--json", "duel.json"}));
+  const ProgramResult ended =
+      run(duelOf({"time-validator/phase_us=100", "time-validator/phase_us=200"},
+                 {"--precision", "5%", "--json", "duel.json"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("time-validator/phase_us=200 is"));
   const Json duel = readJson(file("duel.json"));
@@ -38,7 +39,8 @@ TEST_F(Duel, TellsTheFasterOne) {
 }
 
 TEST_F(Duel, RanksMoreThanTwo) {
-  const Ended ended = run(duelOf({"bf", "sap-simd/scalar", "kd"}, {"--max-seconds", "0.5"}));
+  const ProgramResult ended =
+      run(duelOf({"bf", "sap-simd/scalar", "kd"}, {"--max-seconds", "0.5"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"bf", "sap-simd/scalar", "kd", "1."}) {
     EXPECT_THAT(ended.out, HasSubstr(word));
@@ -46,14 +48,15 @@ TEST_F(Duel, RanksMoreThanTwo) {
 }
 
 TEST_F(Duel, OfPairsAndEvents) {
-  const Ended ended = run(duelOf({"kd", "kd/events", "tracy/events"}, {"--max-seconds", "0.5"}));
+  const ProgramResult ended =
+      run(duelOf({"kd", "kd/events", "tracy/events"}, {"--max-seconds", "0.5"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"kd/events", "tracy/events"}) EXPECT_THAT(ended.out, HasSubstr(word));
   EXPECT_EQ(run(duelOf({"bf", "sap"}, {"--max-seconds", "0.2", "--answer", "events"})).status, 0);
 }
 
 TEST_F(Duel, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
-  const Ended ended = run(duelOf({"bf", "sap"}, {"--max-seconds", "0.5", "--json", "-"}));
+  const ProgramResult ended = run(duelOf({"bf", "sap"}, {"--max-seconds", "0.5", "--json", "-"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Json json = Json::parse(ended.out, nullptr, false);
   ASSERT_TRUE(json.is_object()) << ended.out;
@@ -64,34 +67,35 @@ TEST_F(Duel, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
 TEST_F(Duel, OfTwoBuildsOfAPlugIn) {
   fs::copy_file(places::faultyPlugin(), file("old.so"));
   fs::copy_file(places::faultyPlugin(), file("new.so"));
-  const Ended ended = run(duelOf({"old.so:faulty", "new.so:faulty"}, {"--max-seconds", "0.5"}));
+  const ProgramResult ended =
+      run(duelOf({"old.so:faulty", "new.so:faulty"}, {"--max-seconds", "0.5"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("old.so:faulty"));
 }
 
 TEST_F(Duel, OfTwoPrograms) {
-  const Ended ended =
+  const ProgramResult ended =
       run(duelOf({"sap"}, {"--max-seconds", "0.5", "--baseline-program", places::program()}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("sap (" + std::string(places::program()) + ")"));
 }
 
 TEST_F(Duel, TakesOptionsAndParametersByFormerNames) {
-  const Ended ended = run(duelOf({"columns/crowded=7", "sap"}, {"--seconds", "0.1"}));
+  const ProgramResult ended = run(duelOf({"columns/crowded=7", "sap"}, {"--seconds", "0.1"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("'--seconds' is now called '--max-seconds'"));
   EXPECT_THAT(ended.err, HasSubstr("'crowded' is now called 'split_threshold'"));
 }
 
 TEST_F(Duel, WarnsOfWhatDisturbsTimesAndPins) {
-  const Ended ended = run(duelOf({"sap", "bf-mt/t500"}, {"--max-seconds", "0.1", "--pin"}));
+  const ProgramResult ended = run(duelOf({"sap", "bf-mt/t500"}, {"--max-seconds", "0.1", "--pin"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.warnings, Contains(HasSubstr("500 threads take turns")));
+  EXPECT_THAT(ended.warnings, Contains(HasSubstr("500 threads share")));
 }
 
 TEST_F(Duel, AWrongAnswerEndsIt) {
   const std::string plugin = places::faultyPlugin();
-  const Ended ended = run(duelOf({"sap", plugin + ":faulty-extra"}));
+  const ProgramResult ended = run(duelOf({"sap", plugin + ":faulty-extra"}));
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.out, HasSubstr("mismatch"));
 }

@@ -69,7 +69,7 @@ std::string posesIn(const std::string& directory, const std::string& name) {
 }
 
 EndToEnd::EndToEnd() {
-  // Recordings have names with spaces; so has this directory.
+  // The name has spaces, as names of recordings do.
   std::string name = (fs::temp_directory_path() / "broadmark e2e XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
   directory_ = name;
@@ -80,7 +80,7 @@ EndToEnd::~EndToEnd() {
   fs::remove_all(directory_, ignored);
 }
 
-Ended EndToEnd::run(const Arguments& arguments, const Surroundings& around) const {
+ProgramResult EndToEnd::run(const Arguments& arguments, const ProgramEnvironment& around) const {
   return Program(directory_, arguments, around).wait();
 }
 
@@ -92,9 +92,9 @@ int EndToEnd::shell(const std::string& command) const {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-Ended EndToEnd::runQuietly(Arguments arguments) const {
+ProgramResult EndToEnd::runQuietly(Arguments arguments) const {
   arguments.emplace_back("--quiet");
-  Ended ended = run(arguments);
+  ProgramResult ended = run(arguments);
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
   EXPECT_EQ(ended.err, "");
   return ended;
@@ -115,12 +115,12 @@ std::set<std::string> EndToEnd::files() const {
 }
 
 void EndToEnd::expectRefusal(const Arguments& arguments, const std::vector<std::string>& words,
-                             const Surroundings& around) const {
+                             const ProgramEnvironment& around) const {
   std::string call = "broadmark";
   for (const std::string& argument : arguments) call.append(" ").append(argument);
   SCOPED_TRACE(call);
   const auto before = entries();
-  const Ended ended = run(arguments, around);
+  const ProgramResult ended = run(arguments, around);
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(ended.out, "");
   EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
@@ -131,8 +131,8 @@ void EndToEnd::expectRefusal(const Arguments& arguments, const std::vector<std::
 
 void EndToEnd::bakeRecording(const std::string& name, const std::string& objects,
                              const std::string& frames, const std::string& seed) const {
-  const Ended ended = runQuietly({"bake", "--scenes", "freefall", "--objects", objects, "--frames",
-                                  frames, "--seed", seed, "--output", "baked"});
+  const ProgramResult ended = runQuietly({"bake", "--scenes", "freefall", "--objects", objects,
+                                          "--frames", frames, "--seed", seed, "--output", "baked"});
   fs::rename(file(recordingIn("baked", "FreeFall Cubes N" + objects + " F" + frames + "frames")),
              file(name));
   fs::remove_all(file("baked"));

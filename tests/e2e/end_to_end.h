@@ -1,4 +1,4 @@
-// What all end-to-end tests share: a directory of their own, the program, and a few questions.
+// Fixture of the end-to-end tests: a temporary directory, the program, and queries.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -28,27 +28,27 @@ std::string readFile(const fs::path& path);
 
 void writeFile(const fs::path& path, const std::string& bytes);
 
-/// The file as JSON; fails the test when it is not.
+/// The file as JSON; fails the test if it is invalid.
 Json readJson(const fs::path& path);
 
 std::vector<std::string> linesOf(const std::string& text);
 
-/// A text's words, so that it does not matter where its lines are broken.
+/// A text's words on one line, independent of its line breaks.
 std::string onOneLine(const std::string& text);
 
-/// An .aabbs recording put together by hand: whatever the header claims, with these boxes.
+/// The bytes of an .aabbs recording with these boxes; the header may claim other numbers.
 std::string recordingOf(std::int32_t objects, std::int32_t frames, const std::vector<Aabb>& boxes,
                         const Aabb& world = {{-9, -9, -9, 0}, {9, 9, 9, 0}});
 
 inline constexpr Aabb kUnitBox{{0, 0, 0, 0}, {1, 1, 1, 0}};
 
-/// `count` times the unit box.
+/// `count` unit boxes.
 inline std::vector<Aabb> unitBoxes(std::size_t count) { return {count, kUnitBox}; }
 
-/// Where a recording of this name lies in a directory that was baked into.
+/// The path of a recording below the output directory of a bake.
 std::string recordingIn(const std::string& directory, const std::string& name);
 
-/// Likewise for one of positions and rotations.
+/// The path of a recording of positions and rotations below the output directory of a bake.
 std::string posesIn(const std::string& directory, const std::string& name);
 
 class EndToEnd : public ::testing::Test {
@@ -58,25 +58,25 @@ class EndToEnd : public ::testing::Test {
 
   [[nodiscard]] fs::path file(const fs::path& name) const { return directory_ / name; }
 
-  Ended run(const Arguments& arguments, const Surroundings& around = {}) const;
+  ProgramResult run(const Arguments& arguments, const ProgramEnvironment& around = {}) const;
 
-  /// Runs a command line in a shell, with the program in the path; what it prints is in shell.out.
-  /// Returns its exit status.
+  /// Runs a command line in a shell, with the program in the path and output to shell.out. Returns
+  /// its exit status.
   [[nodiscard]] int shell(const std::string& command) const;
 
-  /// Runs what must succeed, silently.
-  Ended runQuietly(Arguments arguments) const;
+  /// Runs a command with --quiet, and expects success.
+  ProgramResult runQuietly(Arguments arguments) const;
 
-  /// Names of everything below the directory.
+  /// The names of all entries below the directory.
   [[nodiscard]] std::set<std::string> entries() const;
 
-  /// Those of them that are no directories.
+  /// The names of all files below the directory.
   [[nodiscard]] std::set<std::string> files() const;
 
-  /// The program must refuse: exit status 2, nothing printed, nothing written, and one line of
-  /// complaint that holds all of `words`.
+  /// Expects an error: exit status 2, no output, no written files, and a message of one line that
+  /// contains all of `words`.
   void expectRefusal(const Arguments& arguments, const std::vector<std::string>& words,
-                     const Surroundings& around = {}) const;
+                     const ProgramEnvironment& around = {}) const;
 
   /// A small recording called `name`, baked by the program.
   void bakeRecording(const std::string& name, const std::string& objects = "60",

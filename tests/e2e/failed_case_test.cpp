@@ -1,5 +1,5 @@
-// A case that failed: found by a run, opened again from its results, shrunk to the smallest
-// recording, and shown by the printed command in a process of its own.
+// A failed case: found by a run, reopened from its results, shrunk to a minimal recording, and
+// reproduced by the printed command in a separate process.
 
 #include <algorithm>
 
@@ -14,13 +14,13 @@ namespace {
 
 class FailedCase : public EndToEnd {
  protected:
-  /// Runs the faulty algorithms of the plug-in on a source.
+  /// Runs the plug-in's faulty algorithms on a source.
   void runFaulty(const std::string& source, const Arguments& more = {}) const {
     Arguments call = {"--headless",  source,    "--plugin",    places::faultyPlugin(),
                       "--algorithm", "faulty*", "--param",     "fat_margin=0.5",
                       "--quiet",     "--json",  "results.json"};
     call.insert(call.end(), more.begin(), more.end());
-    const Ended ended = run(call);
+    const ProgramResult ended = run(call);
     EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
   }
   void simulateFaulty() const {
@@ -31,8 +31,8 @@ class FailedCase : public EndToEnd {
   [[nodiscard]] Json caseOf(const std::string& algorithm,
                             const std::string& results = "results.json") const {
     const Json all = readJson(file(results));
-    for (const Json& one : all.at("cases")) {
-      if (one.at("algorithm") == algorithm) return one;
+    for (const Json& result : all.at("cases")) {
+      if (result.at("algorithm") == algorithm) return result;
     }
     ADD_FAILURE() << "no case of " << algorithm;
     return {};
@@ -41,7 +41,7 @@ class FailedCase : public EndToEnd {
     return caseOf(algorithm).at("id");
   }
 
-  /// Arguments about one case of results.json.
+  /// Arguments for a case of results.json.
   [[nodiscard]] Arguments aboutCase(const std::string& id, const Arguments& more = {}) const {
     Arguments call = {"--headless", "results.json",         "--case", id,
                       "--plugin",   places::faultyPlugin(), "--quiet"};
@@ -55,7 +55,7 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
   for (const std::string algorithm : {"faulty", "faulty-extra"}) {
     SCOPED_TRACE(algorithm);
     const std::string recording = "it's a " + algorithm + " case.aabbs";
-    const Ended ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
+    const ProgramResult ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
     ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
     EXPECT_EQ(ended.err, "");
 
@@ -86,15 +86,16 @@ TEST_F(FailedCase, OfAChangingWorldKeepsWhatTheFaultNeeds) {
   RecordingWriter writer(file("world.broadmark"), scene.scene());
   recordAll(scene, writer);
   writer.finish();
-  const Ended found = run({"--headless", "world.broadmark", "--plugin", places::faultyPlugin(),
-                           "--algorithm", "lossy*", "--quiet", "--json", "results.json"});
+  const ProgramResult found =
+      run({"--headless", "world.broadmark", "--plugin", places::faultyPlugin(), "--algorithm",
+           "lossy*", "--quiet", "--json", "results.json"});
   EXPECT_EQ(found.status, 1) << found.out << found.err;
   for (const std::string algorithm : {"lossy-removal", "lossy-layers"}) {
     SCOPED_TRACE(algorithm);
     expectRefusal(aboutCase(idOf(algorithm), {"--export-case", "a.aabbs"}),
                   {"a.aabbs", ".broadmark"});
     const std::string recording = algorithm + " case.broadmark";
-    const Ended ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
+    const ProgramResult ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
     ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
 
     const auto written = openRecordingFile(file(recording));
@@ -115,7 +116,7 @@ TEST_F(FailedCase, OfWrongEvents) {
   for (const std::string algorithm : {"faulty", "faulty-extra"}) {
     SCOPED_TRACE(algorithm);
     EXPECT_EQ(caseOf(algorithm).at("status"), "mismatch");
-    const Ended ended = run(aboutCase(idOf(algorithm), {"--export-case", "events.aabbs"}));
+    const ProgramResult ended = run(aboutCase(idOf(algorithm), {"--export-case", "events.aabbs"}));
     ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
     EXPECT_LE(RecordingReader(file("events.aabbs")).scene().objects, 3U);
     const std::string command = linesOf(ended.out).back();
@@ -128,7 +129,7 @@ TEST_F(FailedCase, OfWrongEvents) {
 TEST_F(FailedCase, RunsAgainAsItDid) {
   simulateFaulty();
   const Json before = caseOf("faulty");
-  const Ended ended = run(aboutCase(before.at("id"), {"--json", "again.json"}));
+  const ProgramResult ended = run(aboutCase(before.at("id"), {"--json", "again.json"}));
   EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
   EXPECT_EQ(readJson(file("again.json")).at("cases").size(), 1U);
   const Json after = caseOf("faulty", "again.json");

@@ -1,4 +1,4 @@
-// What the program says about itself.
+// Help and lists.
 
 #include <algorithm>
 #include <sstream>
@@ -13,14 +13,14 @@ namespace {
 using Help = EndToEnd;
 using List = EndToEnd;
 
-void expectWords(const Ended& ended, const std::vector<std::string>& words) {
+void expectWords(const ProgramResult& ended, const std::vector<std::string>& words) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err, "");
   const std::string text = onOneLine(ended.out);
   for (const std::string& word : words) EXPECT_THAT(text, HasSubstr(word));
 }
 
-/// In characters, not bytes.
+/// The width in characters, not bytes.
 std::size_t longestLine(const std::string& text) {
   std::size_t longest = 0;
   for (const std::string& line : linesOf(text)) {
@@ -43,13 +43,13 @@ std::vector<std::string> entriesOf(const std::string& help, const std::string& h
 }
 
 TEST_F(Help, OfAllHasThatOfEveryCommand) {
-  const Ended help = run({"--help"});
+  const ProgramResult help = run({"--help"});
   expectWords(help, {"Usage: broadmark ", "Exit status"});
   std::vector<std::string> all = entriesOf(help.out, "Options:");
   const std::vector<std::string> commands = entriesOf(help.out, "Subcommands:");
   EXPECT_FALSE(commands.empty());
   for (const std::string& command : commands) {
-    const Ended of_command = run({command, "--help"});
+    const ProgramResult of_command = run({command, "--help"});
     expectWords(of_command, {"Usage: broadmark " + command});
     for (const std::string& option : entriesOf(of_command.out, "Options:")) all.push_back(option);
   }
@@ -57,13 +57,13 @@ TEST_F(Help, OfAllHasThatOfEveryCommand) {
 }
 
 TEST_F(Help, Version) {
-  const Ended ended = run({"--version"});
+  const ProgramResult ended = run({"--version"});
   expectWords(ended, {"."});
   EXPECT_EQ(linesOf(ended.out).size(), 1U);
 }
 
 TEST_F(List, NamesEverything) {
-  const Ended all = run({"list"});
+  const ProgramResult all = run({"list"});
   for (const Algorithm& algorithm : builtinAlgorithms()) {
     expectWords(all, {algorithm.id, algorithm.description.source, algorithm.description.time});
     expectWords(run({"list", "algorithms"}), {algorithm.id});
@@ -84,13 +84,13 @@ TEST_F(List, NamesEverything) {
 }
 
 TEST_F(List, FitsInto100Columns) {
-  const Ended all = run({"list"});
+  const ProgramResult all = run({"list"});
   EXPECT_LE(longestLine(all.out), 100U);
   EXPECT_GT(longestLine(all.out), 90U) << "and uses them";
 }
 
 TEST_F(List, OfSomeAlgorithms) {
-  const Ended ended = run({"list", "algorithms", "kd", "sap*"});
+  const ProgramResult ended = run({"list", "algorithms", "kd", "sap*"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"kd: ", "sap-simd: "}) EXPECT_THAT(ended.out, HasSubstr(word));
   EXPECT_THAT(ended.out, Not(HasSubstr("tracy")));
@@ -103,7 +103,7 @@ TEST_F(List, WhatCannotBePrintedIsAnError) {
   for (const Arguments& call :
        {Arguments{"list"}, Arguments{"--help"}, Arguments{"--version"},
         Arguments{"--headless", "freefall", "--objects", "5", "--frames", "2", "--quiet"}}) {
-    const Ended ended = run(call, {.standard_output = "/dev/full"});
+    const ProgramResult ended = run(call, {.standard_output = "/dev/full"});
     EXPECT_EQ(ended.status, 2) << call.front();
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     EXPECT_THAT(ended.err, StartsWith("broadmark: "));

@@ -1,6 +1,6 @@
-// Files from somebody else: they are data. None makes the program write elsewhere, run something,
-// or take the machine's memory. A plug-in is code; a worker process has dropped what it does not
-// need.
+// Untrusted files are data: none makes the program write outside its folder, run programs or
+// exhaust the machine's memory. A plug-in is code, so a worker process drops unneeded privileges
+// and descriptors.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -26,7 +26,7 @@ class HostileInput : public EndToEnd {
     fs::create_directory_symlink(file("elsewhere"), file("here/link"));
   }
 
-  /// Where nothing from a file may be written, when the current folder is `here`.
+  /// Paths that input files must not write to if the current folder is `here`.
   [[nodiscard]] std::vector<std::string> placesElsewhere() const {
     return {file("elsewhere/x.json").string(),
             "../elsewhere/x.json",
@@ -36,14 +36,14 @@ class HostileInput : public EndToEnd {
             "sub/../../x.json"};
   }
 
-  Ended runHere(const Arguments& call, const Surroundings& around = {}) const {
+  ProgramResult runHere(const Arguments& call, const ProgramEnvironment& around = {}) const {
     return Program(file("here"), call, around).wait();
   }
 
   void expectRefusedHere(const Arguments& call, const std::string& place) const {
     SCOPED_TRACE(place);
     const auto before = entries();
-    const Ended ended = runHere(call);
+    const ProgramResult ended = runHere(call);
     EXPECT_EQ(ended.status, 2);
     EXPECT_THAT(ended.err, HasSubstr("cannot write: only files below"));
     EXPECT_EQ(entries(), before);
@@ -86,15 +86,15 @@ TEST_F(HostileInput, ScriptsWriteHereOnly) {
                     elsewhere)}) {
     expectRefusedHere(play(script), script);
   }
-  // What the user names may lie anywhere.
+  // Paths on the command line may be anywhere.
   Arguments call = play("write frame frame.txt\n");
   call.insert(call.end(), {"--screenshot", file("elsewhere/last.png").string()});
-  const Ended ended = runHere(call);
+  const ProgramResult ended = runHere(call);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_TRUE(fs::exists(file("here/frame.txt")) && fs::exists(file("elsewhere/last.png")));
 }
 
-/// What /proc says of a process: the rest of the line that begins so.
+/// The rest of the line with this beginning, in a file of the process in /proc.
 std::string processLine(pid_t process, const std::string& file, const std::string& begin) {
   std::ifstream lines("/proc/" + std::to_string(process) + "/" + file);
   for (std::string line; std::getline(lines, line);) {
@@ -105,7 +105,7 @@ std::string processLine(pid_t process, const std::string& file, const std::strin
 
 TEST_F(HostileInput, ClaimsEndAtTheLimitOfMemory) {
   if (kSanitized) GTEST_SKIP() << "sanitizers hold more from the start";
-  // The limit is the machine's memory, and less where the user wants it.
+  // The limit is the machine's memory, or less if the user sets a limit.
   Program endless(directory_, {"bake", "--scenes", "brownian", "--objects", "100", "--frames",
                                "1000000", "--output", "out", "--quiet"});
   ASSERT_TRUE(endless.waitUntil([&] { return fs::exists(file("out")); }));
@@ -120,17 +120,17 @@ TEST_F(HostileInput, ClaimsEndAtTheLimitOfMemory) {
   writeFile(file("bodies.json"),
             R"({"schema": "broadmark-scene-parameters/1", "scene": "freefall", "parameters":
                 {"objects": 10000000, "frames": 2}})");
-  const Surroundings small{.most_memory = rlim_t{1} << 28};
+  const ProgramEnvironment small{.max_memory_bytes = rlim_t{1} << 28};
   for (const char* name : {"arrays.json", "bodies.json"}) {
     SCOPED_TRACE(name);
-    const Ended ended = run({"--headless", name, "--algorithm", "sap", "--quiet"}, small);
+    const ProgramResult ended = run({"--headless", name, "--algorithm", "sap", "--quiet"}, small);
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(ended.err, "broadmark: out of memory\n");
   }
 }
 
-// What it cannot need: dumps of its memory, more rights than its user has, and descriptors of the
-// process that started it.
+// A worker needs no core dumps, no privileges beyond its user's, and no descriptors of its parent
+// process.
 TEST_F(HostileInput, AWorkerHasDroppedWhatItDoesNotNeed) {
   writeFile(file("results.json"), "");
   std::FILE* inherited = std::fopen(file("secret").c_str(), "w");

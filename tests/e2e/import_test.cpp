@@ -7,14 +7,14 @@ namespace {
 
 using Import = EndToEnd;
 
-/// Three boxes in a row: the first two touch, the last one appears, the first one vanishes.
+/// Three boxes in a row: the first two touch, the last appears, the first vanishes.
 constexpr const char* kCsv =
     "frame,id,x0,y0,z0,x1,y1,z1\n"
     "0,0,0,0,0,1,1,1\n0,1,1,0,0,2,1,1\n"
     "1,0,0,0,0,1,1,1\n1,1,5,0,0,6,1,1\n1,2,3,0,0,4,1,1\n"
     "2,1,5,0,0,6,1,1\n2,2,3,0,0,4,1,1\n";
 
-/// The pairs of each frame, in a results file of one case.
+/// The number of pairs per frame, in a results file with one case.
 std::vector<int> pairsOf(const fs::path& results) {
   return readJson(results)["cases"][0]["frame_counts"]["pairs"].get<std::vector<int>>();
 }
@@ -24,7 +24,7 @@ TEST_F(Import, RunsOnFilesDirectly) {
   runQuietly(
       {"--headless", "boxes.csv", "--algorithm", "sap", "--check", "full", "--json", "r.json"});
   EXPECT_THAT(pairsOf(file("r.json")), ElementsAre(0, 0));
-  // In frame 1 body 1 comes by body 2.
+  // In frame 1 body 1 passes body 2.
   runQuietly({"--headless", "boxes.csv", "--swept", "--algorithm", "sap", "--check", "full",
               "--json", "s.json"});
   EXPECT_THAT(pairsOf(file("s.json")), ElementsAre(2, 0));
@@ -44,7 +44,7 @@ TEST_F(Import, ResultsTellHowTheSourceWasRead) {
   runQuietly({"--headless", "p.xyz", "--radius", "0.5", "--algorithm", "sap", "--json", "u.json"});
   EXPECT_NE(readJson(file("u.json"))["cases"][0]["recording"]["hash"], recording["hash"]);
 
-  // The same case again: opened in the same way, its hash is checked.
+  // The same case again: it is opened with the same options, and its hash is checked.
   runQuietly({"--headless", "r.json", "--case", result["id"], "--json", "again.json"});
   EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], recording);
   writeFile(file("p.xyz"), "1\n\nA 0 0 0\n1\n\nA 2 0 0\n");
@@ -65,16 +65,16 @@ TEST_F(Import, ScenesAndRecordingsCanBeSwept) {
   ASSERT_EQ(swept.size(), 3U);
   for (const Json& result : swept) EXPECT_EQ(result["status"], "ok") << result["algorithm"];
   runQuietly({"--headless", "swept.json", "--case", swept[0]["id"], "--json", "again.json"});
-  // A recording that is kept is the scene's own; swept, it is the same again.
+  // A stored recording is the scene's, not swept; swept again, it gives the same results.
   runQuietly(with({"--record", "out"}));
   const std::string kept = recordingIn("out", "Brownian Cubes N40 F4frames");
   runQuietly({"--headless", kept, "--swept", "--algorithm", "sap", "--json", "file.json"});
   EXPECT_EQ(readJson(file("file.json"))["cases"][0]["recording"]["hash"],
             swept[0]["recording"]["hash"]);
-  const Ended described = run({"verify", kept, "--swept", "--describe"});
+  const ProgramResult described = run({"verify", kept, "--swept", "--describe"});
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_THAT(described.out, HasSubstr("Brownian swept Cubes"));
-  const Ended duel =
+  const ProgramResult duel =
       run({"duel", kept, "sap", "bf", "--swept", "--max-seconds", "0.3", "--json", "-"});
   EXPECT_EQ(duel.status, 0) << duel.err;
   EXPECT_THAT(duel.out, HasSubstr("Brownian swept"));

@@ -1,4 +1,4 @@
-// Ctrl-C, a kill and a full disc: what is finished stays, what is not does not look finished.
+// Ctrl-C, SIGKILL and a full disc: finished files remain, and unfinished ones are recognisable.
 
 #include <fmt/format.h>
 #include <sys/mount.h>
@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::AllOf;
 
-/// So many frames that no bake of them ends before it is interrupted.
+/// Enough frames that every bake is still running when it is interrupted.
 constexpr const char* kEndless = "1000000";
 
 class Interruption : public EndToEnd {
@@ -32,7 +32,7 @@ TEST_F(Interruption, OfABakeLeavesNothingHalf) {
     Program bake(directory_, kEndlessBake);
     ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
     bake.signal(signal);
-    const Ended ended = bake.wait();
+    const ProgramResult ended = bake.wait();
     EXPECT_EQ(ended.status, 130);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     EXPECT_THAT(ended.err, StartsWith("broadmark: interrupted"));
@@ -51,7 +51,7 @@ TEST_F(Interruption, TwoSignalsAtOnceAreOne) {
 }
 
 TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
-  // Two threads: the endless one is begun first, the small ones are baked beside it.
+  // Two threads: the endless bake starts first, the small ones run beside it.
   const Arguments call = {"bake", "--scenes", "freefall", "--objects", "2,3,5000", "--frames",
                           "1500", "--output", "out",      "--threads", "2"};
   const auto path = [](int n) {
@@ -64,7 +64,7 @@ TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
       return baked() && fs::exists(file("out/Recordings_AABBs/FreeFall Cubes N2 F1500frames.json"));
     }));
     bake.signal(signal);
-    const Ended ended = bake.wait();
+    const ProgramResult ended = bake.wait();
     if (signal == SIGKILL) continue;
     EXPECT_EQ(ended.status, 130);
     EXPECT_THAT(ended.err, AllOf(HasSubstr("stopped at"), Not(HasSubstr("done"))));
@@ -76,13 +76,13 @@ TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
   EXPECT_FALSE(fs::exists(file(path(5000))));
   EXPECT_EQ(run({"verify", path(2), path(3)}).status, 0);
 
-  // The same call goes on: what is whole is not touched.
+  // The same call resumes: it does not touch complete recordings.
   const auto long_ago = fs::last_write_time(file(path(3))) - std::chrono::hours(1);
   fs::last_write_time(file(path(3)), long_ago);
   Program again(directory_, call);
   ASSERT_TRUE(again.waitUntil([&] { return hasGrown(path(5000) + ".part"); }));
   again.signal(SIGINT);
-  const Ended ended = again.wait();
+  const ProgramResult ended = again.wait();
   EXPECT_THAT(linesOf(ended.out), ElementsAre("kept   " + path(2), "kept   " + path(3),
                                               StartsWith("0 baked, 2 kept, 1 not finished; ")));
   EXPECT_EQ(fs::last_write_time(file(path(3))), long_ago);
@@ -96,7 +96,7 @@ TEST_F(Interruption, AKilledBakeLeavesNothingThatLooksWhole) {
     EXPECT_EQ(bake.wait().status, 128 + SIGKILL);
   }
   EXPECT_FALSE(fs::exists(file(kEndlessFile)));
-  // The next one takes over what was left (made recognisable here); its name is not locked.
+  // The next bake replaces the partial file (enlarged here as a mark); its name is not locked.
   constexpr std::uintmax_t kMuch = std::uintmax_t{1} << 30;
   fs::resize_file(file(kEndlessFile + ".part"), kMuch);
   Program again(directory_, kEndlessBake);
@@ -111,10 +111,10 @@ TEST_F(Interruption, AKilledBakeLeavesNothingThatLooksWhole) {
 TEST_F(Interruption, TwoBakesOfOneNameExcludeEachOther) {
   Program first(directory_, kEndlessBake);
   ASSERT_TRUE(first.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
-  const Ended second = run(kEndlessBake);
+  const ProgramResult second = run(kEndlessBake);
   EXPECT_EQ(second.status, 2);
   EXPECT_THAT(second.err, HasSubstr("another process"));
-  EXPECT_TRUE(first.runs());
+  EXPECT_TRUE(first.isRunning());
   EXPECT_TRUE(fs::exists(file(kEndlessFile + ".part")));
 }
 
@@ -126,7 +126,7 @@ TEST_F(Interruption, OfARunKeepsFinishedCases) {
                       "--filter", "(N10/.*/bf$)|(N2000/.*/bf-mt)", "--time-limit", "100"});
   ASSERT_TRUE(run_of_two.waitUntil([&] { return fs::exists(file("results.json")); }));
   run_of_two.signal(SIGINT);
-  const Ended ended = run_of_two.wait();
+  const ProgramResult ended = run_of_two.wait();
   EXPECT_EQ(ended.status, 130);
   EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
   EXPECT_THAT(ended.out, HasSubstr("written: results.json"));
@@ -141,7 +141,7 @@ TEST_F(Interruption, OfARunsFirstSimulationWritesNothing) {
                                "--json", "results.json", "--record", "out", "--quiet"});
   ASSERT_TRUE(endless.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
   endless.signal(SIGINT);
-  const Ended ended = endless.wait();
+  const ProgramResult ended = endless.wait();
   EXPECT_EQ(ended.status, 130);
   EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
   EXPECT_THAT(ended.out, Not(HasSubstr("results.json")));
@@ -156,7 +156,7 @@ TEST_F(Interruption, OfADuelWritesNothing) {
   Program endless(directory_, duel);
   ASSERT_TRUE(endless.waitForText("printed on purpose", 20));
   endless.signal(SIGINT);
-  const Ended ended = endless.wait();
+  const ProgramResult ended = endless.wait();
   EXPECT_EQ(ended.status, 130);
   std::vector<std::string> complaints = linesOf(ended.err);
   std::erase(complaints, "printed on purpose");
@@ -165,7 +165,7 @@ TEST_F(Interruption, OfADuelWritesNothing) {
   EXPECT_THAT(files(), IsEmpty());
 }
 
-// The second case of the one recording would take long: the first one is kept nevertheless.
+// The first case is saved although the second case of the same recording takes long.
 TEST_F(Interruption, AKilledRunLosesNoFinishedCase) {
   Program two(directory_, {"--headless", "freefall", "--objects", "10", "--frames", "100",
                            "--algorithm", "sap,time-validator", "--param", "phase_us=200000",
@@ -180,7 +180,7 @@ TEST_F(Interruption, AKilledRunLosesNoFinishedCase) {
   ASSERT_TRUE(two.waitUntil([&] { return fs::exists(file("results.jsonl")) && cases() == 1; }));
   two.signal(SIGKILL);
   two.wait();
-  const Ended compared = run({"compare", "results.jsonl", "results.jsonl"});
+  const ProgramResult compared = run({"compare", "results.jsonl", "results.jsonl"});
   EXPECT_EQ(compared.status, 0) << compared.err;
   EXPECT_THAT(compared.out, HasSubstr("results.jsonl: partial"));
   EXPECT_THAT(linesOf(compared.out).back(), StartsWith("1 case: "));
@@ -204,11 +204,11 @@ TEST_F(Interruption, AKilledRunLeavesWholeResultsOrNone) {
 
 class FullDisc : public EndToEnd {
  protected:
-  /// One line that names the file; nothing left but what was there.
+  /// Expects an error of one line that names the file, and no new files.
   void expectNoSpace(const Arguments& arguments, const std::vector<std::string>& words,
-                     const Surroundings& around) const {
+                     const ProgramEnvironment& around) const {
     const auto before = files();
-    const Ended ended = run(arguments, around);
+    const ProgramResult ended = run(arguments, around);
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     for (const std::string& word : words) EXPECT_THAT(ended.err, HasSubstr(word));
@@ -216,17 +216,17 @@ class FullDisc : public EndToEnd {
   }
 };
 
-// Without the OpenCL families: on a full disc PoCL ends the program when it cannot keep a kernel.
+// Without the OpenCL families: PoCL ends the program if it cannot store a kernel on a full disc.
 const Arguments kLargeRun = {
     "--headless", "freefall", "--objects",         "2",      "--frames", "40", "--algorithm",
     "bf*,sap*",   "--json",   "disc/results.json", "--quiet"};
 const Arguments kLargeBake = {"bake",     "--scenes", "freefall", "--objects", "200",
                               "--frames", "40",       "--output", "disc",      "--quiet"};
 
-// A limit on the size of files stands in for a full disc where none can be had.
+// A limit on the size of files simulates a full disc where mounting is not permitted.
 TEST_F(FullDisc, AsALimitOnFiles) {
   fs::create_directory(file("disc"));
-  const Surroundings small{.largest_file = 8000};
+  const ProgramEnvironment small{.max_file_bytes = 8000};
   expectNoSpace(kLargeBake, {"FreeFall Cubes N200", "cannot write", "File too large"}, small);
   expectNoSpace(kLargeRun, {"disc/results.json", "cannot write", "File too large"}, small);
 }
@@ -238,7 +238,7 @@ TEST_F(FullDisc, AsASmallFileSystem) {
   }
   expectNoSpace(kLargeBake, {"disc", "bytes"}, {});
   expectNoSpace(kLargeRun, {"disc/results.json", "cannot write", "No space left"}, {});
-  // Recordings that are simulated for one run lie in the temporary directory.
+  // Recordings simulated for a single run are in the temporary directory.
   expectNoSpace({"--headless", "freefall", "--objects", "200", "--frames", "40", "--algorithm",
                  "sap", "--quiet"},
                 {"temporary", "No space left"},

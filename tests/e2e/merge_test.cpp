@@ -1,4 +1,4 @@
-// Merging shards, and results as lines.
+// Merging shards, and results as JSON Lines.
 
 #include "e2e/end_to_end.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 class Merge : public EndToEnd {
  protected:
-  /// Runs one of two shards, into NAME.
+  /// Runs one of two shards, with results in NAME.
   void runShard(const std::string& shard, const std::string& option, const std::string& name) {
     runQuietly({"--headless", "freefall", "--objects", "40", "--frames", "5", "--algorithm",
                 "sap,bf,kd", "--shard", shard, option, name});
@@ -17,7 +17,8 @@ class Merge : public EndToEnd {
 TEST_F(Merge, TwoShardsGiveTheWholeRun) {
   runShard("0/2", "--jsonl", "a.jsonl");
   runShard("1/2", "--json", "b.json");
-  const Ended ended = run({"merge", "a.jsonl", "b.json", "--json", "whole.json", "--csv", "w.csv"});
+  const ProgramResult ended =
+      run({"merge", "a.jsonl", "b.json", "--json", "whole.json", "--csv", "w.csv"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("3 cases of 2 files"));
   const Json whole = readJson(file("whole.json"));
@@ -25,7 +26,7 @@ TEST_F(Merge, TwoShardsGiveTheWholeRun) {
   EXPECT_EQ(whole.at("environments").size(), 1U);
   EXPECT_EQ(whole.at("complete"), true);
   EXPECT_EQ(linesOf(readFile(file("w.csv"))).size(), 4U);
-  const Ended same = run({"compare", "whole.json", "a.jsonl", "--allow-missing"});
+  const ProgramResult same = run({"compare", "whole.json", "a.jsonl", "--allow-missing"});
   EXPECT_EQ(same.status, 0) << same.err << same.out;
 }
 

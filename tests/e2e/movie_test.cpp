@@ -31,7 +31,7 @@ class Movie : public EndToEnd {
 };
 
 TEST_F(Movie, IsDrawnFrameByFrame) {
-  const Ended ended = runQuietly(call());
+  const ProgramResult ended = runQuietly(call());
   EXPECT_THAT(ended.out, HasSubstr(fmt::format("movie  {}\n", kFolder)));
   EXPECT_EQ(pictures(), kAll);
   std::set<std::string> different;
@@ -61,13 +61,13 @@ TEST_F(Movie, IsKeptUntilItWouldBeAnother) {
   runQuietly(call());
   EXPECT_EQ(fs::last_write_time(last), long_ago);
 
-  // Of an interrupted one a picture is missing.
+  // An interrupted movie lacks a picture.
   fs::remove(file(kFolder) / "frame_00002.png");
   runQuietly(call());
   EXPECT_EQ(pictures(), kAll);
   EXPECT_NE(fs::last_write_time(last), long_ago);
 
-  // Another recording of the same name, and a shorter movie: nothing old is left.
+  // Another recording of the same name with fewer frames: no old pictures remain.
   const std::string before = readFile(last);
   runQuietly(call({"--seed", "2", "--force"}));
   EXPECT_NE(readFile(last), before);

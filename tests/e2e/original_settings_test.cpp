@@ -1,4 +1,4 @@
-// Settings files of the original Broadmark run as they did there.
+// Settings files of the original Broadmark give the same runs.
 
 #include "e2e/end_to_end.h"
 
@@ -28,13 +28,13 @@ std::set<std::string> keysOf(const Json& object) {
 
 TEST_F(OriginalSettings, RunAndLogAsThere) {
   writeSettings("settings.json", settings_);
-  const Ended ended = runQuietly({"--headless", "settings.json", "--json", "results.json"});
+  const ProgramResult ended = runQuietly({"--headless", "settings.json", "--json", "results.json"});
   EXPECT_THAT(ended.out, HasSubstr("written: the log.json"));
 
-  const Json one = readJson(file("results.json")).at("cases").at(0);
-  EXPECT_EQ(one.at("algorithm"), "bf-simd");
-  EXPECT_EQ(one.at("isa"), "sse2");
-  EXPECT_EQ(one.at("status"), "ok");
+  const Json result = readJson(file("results.json")).at("cases").at(0);
+  EXPECT_EQ(result.at("algorithm"), "bf-simd");
+  EXPECT_EQ(result.at("isa"), "sse2");
+  EXPECT_EQ(result.at("status"), "ok");
 
   const Json log = readJson(file("the log.json"));
   EXPECT_EQ(keysOf(log), (std::set<std::string>{"Settings", "Frames"}));
@@ -63,9 +63,9 @@ TEST_F(OriginalSettings, ThreadsAreThoseOfTheFile) {
   settings_["m_numThreads"] = 3;
   writeSettings("settings.json", settings_);
   runQuietly({"--headless", "settings.json", "--json", "results.json"});
-  const Json one = readJson(file("results.json")).at("cases").at(0);
-  EXPECT_EQ(one.at("algorithm"), "sap-mt");
-  EXPECT_EQ(one.at("threads"), 3);
+  const Json result = readJson(file("results.json")).at("cases").at(0);
+  EXPECT_EQ(result.at("algorithm"), "sap-mt");
+  EXPECT_EQ(result.at("threads"), 3);
 }
 
 TEST_F(OriginalSettings, ParametersOfTheTreeAreThoseOfTheFile) {
@@ -74,11 +74,11 @@ TEST_F(OriginalSettings, ParametersOfTheTreeAreThoseOfTheFile) {
   settings_["m_margin"] = {{"x", 0.25}, {"y", 0.5}, {"z", 0.125}};
   writeSettings("settings.json", settings_);
   runQuietly({"--headless", "settings.json", "--json", "results.json"});
-  const Json one = readJson(file("results.json")).at("cases").at(0);
-  EXPECT_EQ(one.at("algorithm"), "kd");
-  EXPECT_EQ(one.at("status"), "ok");
-  EXPECT_EQ(one.at("params").at("objects_per_leaf"), "20");
-  EXPECT_EQ(one.at("params").at("margin"), "0.5");
+  const Json result = readJson(file("results.json")).at("cases").at(0);
+  EXPECT_EQ(result.at("algorithm"), "kd");
+  EXPECT_EQ(result.at("status"), "ok");
+  EXPECT_EQ(result.at("params").at("objects_per_leaf"), "20");
+  EXPECT_EQ(result.at("params").at("margin"), "0.5");
 }
 
 TEST_F(OriginalSettings, ObjectsPerCellAreThoseOfTheFile) {
@@ -87,9 +87,9 @@ TEST_F(OriginalSettings, ObjectsPerCellAreThoseOfTheFile) {
     settings_["m_Grid_ObjectsPerCell"] = 7;
     writeSettings("settings.json", settings_);
     runQuietly({"--headless", "settings.json", "--json", "results.json"});
-    const Json one = readJson(file("results.json")).at("cases").at(0);
-    EXPECT_EQ(one.at("status"), "ok");
-    EXPECT_EQ(one.at("params").at("objects_per_cell"), "7") << algorithm;
+    const Json result = readJson(file("results.json")).at("cases").at(0);
+    EXPECT_EQ(result.at("status"), "ok");
+    EXPECT_EQ(result.at("params").at("objects_per_cell"), "7") << algorithm;
   }
 }
 
@@ -101,17 +101,17 @@ TEST_F(OriginalSettings, InputIsFoundBesideTheSettings) {
   EXPECT_TRUE(fs::exists(file("the log.json")));
 }
 
-// There, Tracy reads the grids' key and nobody reads its own.
+// In the original, Tracy reads the grids' key, and no algorithm reads Tracy's.
 TEST_F(OriginalSettings, TracysCellsAreThoseOfTheGrids) {
   settings_["m_algorithm"] = "Tracy_Parallel";
   settings_["m_Grid_ObjectsPerCell"] = 7;
   settings_["m_Tracy_ObjectsPerCell"] = 8;
   writeSettings("settings.json", settings_);
   runQuietly({"--headless", "settings.json", "--json", "results.json"});
-  const Json one = readJson(file("results.json")).at("cases").at(0);
-  EXPECT_EQ(one.at("algorithm"), "tracy-mt");
-  EXPECT_EQ(one.at("status"), "ok");
-  EXPECT_EQ(one.at("params").at("objects_per_cell"), "7");
+  const Json result = readJson(file("results.json")).at("cases").at(0);
+  EXPECT_EQ(result.at("algorithm"), "tracy-mt");
+  EXPECT_EQ(result.at("status"), "ok");
+  EXPECT_EQ(result.at("params").at("objects_per_cell"), "7");
 }
 
 TEST_F(OriginalSettings, FaultsAreNamed) {

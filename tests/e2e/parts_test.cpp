@@ -1,5 +1,5 @@
-// Parts that can be left out of a build: help and lists show those that are there, and one line
-// says which is not.
+// Optional parts of a build: help and lists show the included parts, and a message names a missing
+// part.
 
 #include "parts.h"
 
@@ -29,7 +29,7 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
       {parts::kAssimp, {"import", "--help"}, {".ply", ".gltf"}},
       {parts::kOde, {"list"}, {"  ode: ", "ode-hash: "}}};
   for (const Shown& shown : all) {
-    const Ended ended = run(shown.call);
+    const ProgramResult ended = run(shown.call);
     EXPECT_EQ(ended.status, 0) << ended.err;
     for (const std::string& word : shown.words) {
       EXPECT_EQ(ended.out.find(word) != std::string::npos, shown.part.included) << word;

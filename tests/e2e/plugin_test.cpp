@@ -11,7 +11,7 @@ class Plugin : public EndToEnd {
  protected:
   Plugin() { fs::copy_file(places::faultyPlugin(), file(plugin_)); }
 
-  /// A small run with more arguments.
+  /// A small run with these further arguments.
   [[nodiscard]] Arguments runWith(const Arguments& more) const {
     Arguments call = {"--headless", "brownian", "--objects", "20", "--frames", "3", "--quiet"};
     call.insert(call.end(), more.begin(), more.end());
@@ -22,7 +22,7 @@ class Plugin : public EndToEnd {
 };
 
 TEST_F(Plugin, IsListed) {
-  const Ended ended = run({"list", "algorithms", "--plugin", plugin_});
+  const ProgramResult ended = run({"list", "algorithms", "--plugin", plugin_});
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word :
        {"faulty-extra", "fat_margin", "1.5", "wrong on purpose", "sap-simd-mt"}) {
@@ -33,8 +33,8 @@ TEST_F(Plugin, IsListed) {
 }
 
 TEST_F(Plugin, RunsBesideTheBuiltInOnes) {
-  const Ended ended = run(runWith({"--plugin", plugin_, "--algorithm", "Faulty,sap", "--param",
-                                   "fat_margin=900", "--json", "results.json"}));
+  const ProgramResult ended = run(runWith({"--plugin", plugin_, "--algorithm", "Faulty,sap",
+                                           "--param", "fat_margin=900", "--json", "results.json"}));
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
   const Json cases = readJson(file("results.json")).at("cases");
   ASSERT_EQ(cases.size(), 5U);  // the whole family, and sap
@@ -50,7 +50,7 @@ TEST_F(Plugin, RunsBesideTheBuiltInOnes) {
 }
 
 TEST_F(Plugin, AllMeansAlsoThose) {
-  const Ended ended = run(runWith({"--plugin", plugin_, "--list"}));
+  const ProgramResult ended = run(runWith({"--plugin", plugin_, "--list"}));
   EXPECT_THAT(ended.out, HasSubstr("/sap\n"));
   EXPECT_THAT(ended.out, HasSubstr("/faulty\n"));
 }
@@ -64,7 +64,7 @@ class EnginePlugin : public EndToEnd {
 };
 
 TEST_F(EnginePlugin, IsListedWithItsParameters) {
-  const Ended ended = run({"list", "engines", "--plugin", plugin_});
+  const ProgramResult ended = run({"list", "engines", "--plugin", plugin_});
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const std::string& word : {std::string("drift: "), std::string("factor on the speed"),
                                   "From " + plugin_, std::string("bullet: ")}) {
@@ -96,16 +96,17 @@ TEST_F(EnginePlugin, MovesTheBodiesOfEveryScene) {
 TEST_F(EnginePlugin, RunsLiveAuthoredAndInADuel) {
   const std::string authored = places::source("assets/scenes/dominoes.json").string();
   for (const std::string& source : {std::string("shooter"), authored}) {
-    const Ended ended = run({"--headless", source, "--plugin", plugin_, "--engine", "drift",
-                             "--frames", "5", "--algorithm", "sap,kd", "--quiet"});
+    const ProgramResult ended = run({"--headless", source, "--plugin", plugin_, "--engine", "drift",
+                                     "--frames", "5", "--algorithm", "sap,kd", "--quiet"});
     EXPECT_EQ(ended.status, 0) << source << ended.out << ended.err;
   }
-  const Ended duel = run({"duel", "brownian", "sap", "sap-simd", "--plugin", plugin_, "--engine",
-                          "drift", "--objects", "50", "--frames", "5", "--max-seconds", "0.2"});
+  const ProgramResult duel =
+      run({"duel", "brownian", "sap", "sap-simd", "--plugin", plugin_, "--engine", "drift",
+           "--objects", "50", "--frames", "5", "--max-seconds", "0.2"});
   EXPECT_EQ(duel.status, 0) << duel.err;
 }
 
-// Plug-ins that come with the program: what can be done with one depends on whether it was built.
+// The program's own plug-ins, which are optional parts of the build.
 TEST_F(EnginePlugin, ThoseOfSdksAreLoadedByTheirNames) {
   const std::vector<std::string> lines = linesOf(run({"list", "plugins"}).out);
   ASSERT_GE(lines.size(), 2U);
@@ -117,7 +118,7 @@ TEST_F(EnginePlugin, ThoseOfSdksAreLoadedByTheirNames) {
                             name,         "--objects",   "50",         "--frames", "5",
                             "--quiet",    "--algorithm", name + "*,kd"};
     if (line.find("not built") == std::string::npos) {
-      const Ended ended = run(call);
+      const ProgramResult ended = run(call);
       EXPECT_EQ(ended.status, 0) << ended.err;
       EXPECT_THAT(ended.out, HasSubstr(name + "-"));
       expectRefusal({"duel", "brownian", name + ":any", "kd"},

@@ -1,7 +1,6 @@
-// The program on a machine that fails: at every step at which it touches a file it is killed, the
-// disc is full or broken, a signal comes or only half is read or written. What was finished stays,
-// nothing half-written looks whole, and the same call goes on. docs/reliability.md lists all
-// faults.
+// The program on a failing machine: at every file operation it is killed, the disc is full or
+// broken, a signal arrives, or a read or write is partial. Finished files remain, no partial file
+// looks complete, and the same command resumes. docs/reliability.md lists all faults.
 
 #include <fmt/format.h>
 #include <sys/mount.h>
@@ -21,7 +20,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::AnyOf;
 
-/// Files by their names below a folder, with their contents.
+/// The contents of the files below a folder, by name.
 using Contents = std::map<std::string, std::string>;
 
 Contents contentsOf(const fs::path& folder) {
@@ -42,7 +41,7 @@ void restore(const fs::path& folder, const Contents& contents) {
   }
 }
 
-/// What of results does not differ from run to run.
+/// The reproducible part of results.
 struct Essence {
   std::vector<std::string> cases;
   bool complete = false;
@@ -61,28 +60,28 @@ Essence essenceOf(const std::string& name, const std::string& bytes) {
   }
   const Results results = parseResults(bytes, name);
   Essence essence{.complete = results.complete};
-  for (const CaseResult& one : results.cases) {
-    essence.cases.push_back(fmt::format("{} {} {} {}", one.id, statusName(one.status),
-                                        one.pairs_mean, one.recording.hash));
+  for (const CaseResult& result : results.cases) {
+    essence.cases.push_back(fmt::format("{} {} {} {}", result.id, statusName(result.status),
+                                        result.pairs_mean, result.recording.hash));
   }
   return essence;
 }
 
-/// A call of the program that writes files.
+/// A command that writes files.
 struct Step {
   std::string name;
-  std::vector<Arguments> before;  ///< calls whose files are there when it begins
+  std::vector<Arguments> before;  ///< commands to run before it
   Arguments call;
-  Contents texts;  ///< other files that are there
-  int stride = 1;  ///< of its calls on files every so manieth fails, each for another reason
+  Contents texts;  ///< other existing files
+  int stride = 1;  ///< the fault tests let every stride-th file operation fail
   int kill_stride = 1;
-  bool shown = true;  ///< whether the parts that it needs are built
+  bool shown = true;  ///< whether the required parts are built
 
   friend void PrintTo(const Step& step, std::ostream* out) { *out << step.name; }
 };
 
 std::vector<Step> steps() {
-  const auto run = [](const std::string& algorithms) {
+  const auto headless = [](const std::string& algorithms) {
     return Arguments{"--headless",  "freefall", "--objects",    "5",      "--frames", "2",
                      "--algorithm", algorithms, "--in-process", "--quiet"};
   };
@@ -101,13 +100,13 @@ std::vector<Step> steps() {
   return {
       {.name = "Bake", .before = {bake("5")}, .call = bake("5,6")},
       {.name = "Run",
-       .before = {with(run("bf"), outputs)},
-       .call = with(with(run("bf,sap"), outputs), {"--record", "recordings"}),
+       .before = {with(headless("bf"), outputs)},
+       .call = with(with(headless("bf,sap"), outputs), {"--record", "recordings"}),
        .stride = 2},
       {.name = "Merge",
-       .before = {with(run("bf"), {"--jsonl", "results.jsonl"}),
-                  with(run("sap"), {"--json", "b.json"})},
-       // Over one of its sources.
+       .before = {with(headless("bf"), {"--jsonl", "results.jsonl"}),
+                  with(headless("sap"), {"--json", "b.json"})},
+       // The output replaces one of the sources.
        .call = with({"merge", "results.jsonl", "b.json"}, outputs)},
       {.name = "Convert",
        .before = {bake("5"), {"convert", poses, "made.aabbs", "--quiet"}},
@@ -133,14 +132,14 @@ std::vector<Step> steps() {
   };
 }
 
-/// A call on files, as the library under the program has noted it.
+/// A file operation, as logged by the preloaded library.
 struct Call {
   int number = 0;
   std::string kind;
   fs::path path;
 
-  [[nodiscard]] bool is(std::string_view one, const fs::path& at) const {
-    return kind == one && path == at;
+  [[nodiscard]] bool is(std::string_view wanted, const fs::path& at) const {
+    return kind == wanted && path == at;
   }
   [[nodiscard]] bool changes() const { return kind != "read" && kind != "open"; }
   [[nodiscard]] bool needsRoom() const {
@@ -155,33 +154,34 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
     if (!GetParam().shown) GTEST_SKIP() << "left out of this build";
     restore(folder_, GetParam().texts);
     for (const Arguments& call : GetParam().before) {
-      const Ended ended = Program(folder_, call).wait();
+      const ProgramResult ended = Program(folder_, call).wait();
       ASSERT_EQ(ended.status, 0) << ended.err;
     }
     before_ = contentsOf(folder_);
-    const Ended ended = runWith("");
+    const ProgramResult ended = runWith("");
     ASSERT_EQ(ended.status, 0) << ended.err;
     calls_ = noted();
     whole_ = contentsOf(folder_);
     ASSERT_GT(whole_.size(), before_.size());
   }
 
-  /// From the same files as ever, with a fault.
-  Ended runWith(const std::string& fault) {
+  /// Runs the command on the initial files, with a fault.
+  ProgramResult runWith(const std::string& fault) {
     restore(folder_, before_);
     fs::remove(log_);
     const fs::path library = places::faultInjection();
-    return Program(folder_, GetParam().call,
-                   {.environment = {{"LD_PRELOAD",
-                                     library.filename()},  // no path, which a space would end
-                                    {"LD_LIBRARY_PATH", library.parent_path()},
-                                    {"BROADMARK_FAULT_FOLDER", folder_.string()},
-                                    {"BROADMARK_FAULT_LOG", log_.string()},
-                                    {"BROADMARK_FAULT", fault}}})
+    return Program(
+               folder_, GetParam().call,
+               {.environment = {{"LD_PRELOAD",
+                                 library.filename()},  // a name, because a space would end a path
+                                {"LD_LIBRARY_PATH", library.parent_path()},
+                                {"BROADMARK_FAULT_FOLDER", folder_.string()},
+                                {"BROADMARK_FAULT_LOG", log_.string()},
+                                {"BROADMARK_FAULT", fault}}})
         .wait();
   }
 
-  /// The calls of the last run.
+  /// The file operations of the last run.
   [[nodiscard]] std::vector<Call> noted() const {
     std::vector<Call> calls;
     for (const std::string& line : linesOf(readFile(log_))) {
@@ -196,7 +196,7 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
     return calls;
   }
 
-  /// Calls visit(call) for each call that changes something, or for some of them, from `first` on.
+  /// Calls visit(call) for every stride-th operation that changes a file; `first`: an offset.
   template <class Visit>
   void eachChange(int first, int stride, Visit&& visit) const {
     int change = -first;
@@ -207,7 +207,7 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
     }
   }
 
-  /// What is there is old or new; of results also a part, which says so.
+  /// Expects that each file is old or new; results may also be partial and marked as such.
   void expectNothingHalf() const {
     const Contents now = contentsOf(folder_);
     for (const auto& [name, bytes] : before_) EXPECT_TRUE(now.contains(name)) << name;
@@ -230,20 +230,20 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
   }
 
   void expectGoesOn() {
-    const Ended again = Program(folder_, GetParam().call).wait();
+    const ProgramResult again = Program(folder_, GetParam().call).wait();
     EXPECT_EQ(again.status, 0) << again.err;
     expectAllDone();
   }
 
-  /// One line, or one for each file, that names what could not be written.
-  void expectComplaint(const Ended& ended, const Call& about) const {
+  /// Expects an error of one line, or of one per file, that names the file that cannot be written.
+  void expectComplaint(const ProgramResult& ended, const Call& about) const {
     fs::path named = about.path;
-    // A folder is synced for the name that it got last.
-    for (const Call& one : calls_) {
-      const bool names = one.kind == "rename" || one.kind == "mkdir";
-      if (about.kind == "fsync" && names && one.number < about.number &&
-          one.path.parent_path() == about.path) {
-        named = one.path;
+    // A folder is synced because of the entry created last.
+    for (const Call& call : calls_) {
+      const bool names = call.kind == "rename" || call.kind == "mkdir";
+      if (about.kind == "fsync" && names && call.number < about.number &&
+          call.path.parent_path() == about.path) {
+        named = call.path;
       }
     }
     EXPECT_EQ(ended.status, 2) << ended.err;
@@ -258,7 +258,7 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
   const fs::path log_ = directory_ / "calls.txt";
   Contents before_;
   Contents whole_;
-  std::vector<Call> calls_;  ///< of a run without fault
+  std::vector<Call> calls_;  ///< of a run without faults
 
  private:
   [[nodiscard]] bool isWhole(const std::string& name, const std::string& bytes) const {
@@ -267,12 +267,12 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
   }
 
   [[nodiscard]] bool isWholeOrSaysSo(const std::string& name, const std::string& bytes) const {
-    if (isResultsName(name) && bytes.empty()) return !before_.contains(name);  // holds nothing
+    if (isResultsName(name) && bytes.empty()) return !before_.contains(name);  // no content yet
     if (isWhole(name, bytes)) return true;
     if (!isResultsName(name)) return false;
     const Essence now = essenceOf(name, bytes);
     const Essence whole = essenceOf(name, whole_.at(name));
-    // Rows of CSV tell nothing but what they hold.
+    // CSV does not state whether it is complete.
     return (!now.complete || name.ends_with(".csv")) && !now.cases.empty() &&
            now.cases.size() <= whole.cases.size() &&
            std::equal(now.cases.begin(), now.cases.end(), whole.cases.begin());
@@ -282,7 +282,7 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
 TEST_P(Reliability, KilledAnywhere) {
   int number = 0;
   eachChange(0, GetParam().kill_stride, [&](const Call& call) {
-    const Ended ended = runWith(fmt::format("kill {}", call.number));
+    const ProgramResult ended = runWith(fmt::format("kill {}", call.number));
     EXPECT_EQ(ended.status, 128 + SIGKILL);
     expectNothingHalf();
     if (number++ % 6 == 0) expectGoesOn();
@@ -292,9 +292,9 @@ TEST_P(Reliability, KilledAnywhere) {
 
 TEST_P(Reliability, TheDiscIsFullFromAnyCallOn) {
   eachChange(1, GetParam().stride, [&](const Call& call) {
-    const Ended ended = runWith(fmt::format("ENOSPC {}", call.number));
+    const ProgramResult ended = runWith(fmt::format("ENOSPC {}", call.number));
     const auto failed = std::ranges::find_if(
-        calls_, [&](const Call& one) { return one.number >= call.number && one.needsRoom(); });
+        calls_, [&](const Call& next) { return next.number >= call.number && next.needsRoom(); });
     if (failed == calls_.end()) {
       EXPECT_EQ(ended.status, 0) << ended.err;
     } else {
@@ -308,8 +308,8 @@ TEST_P(Reliability, TheDiscIsFullFromAnyCallOn) {
 
 TEST_P(Reliability, AnyCallFails) {
   const auto fails = [&](const Call& call) {
-    const Ended ended = runWith(fmt::format("EIO {}", call.number));
-    // What a probe leaves is taken over; what cannot be read may be made anew.
+    const ProgramResult ended = runWith(fmt::format("EIO {}", call.number));
+    // A leftover of a probe is reused, and an unreadable file may be written again.
     const bool matters = call.changes() && call.kind != "unlink";
     if (matters || ended.status != 0) {
       expectComplaint(ended, call);
@@ -329,14 +329,14 @@ TEST_P(Reliability, AnyCallFails) {
 TEST_P(Reliability, SignalsAndHalvesAreNotSeen) {
   for (const char* fault : {"EINTR 1", "EINTR 2", "short 1"}) {
     SCOPED_TRACE(fault);
-    const Ended ended = runWith(fault);
+    const ProgramResult ended = runWith(fault);
     EXPECT_EQ(ended.status, 0) << ended.err;
     EXPECT_GT(noted().size(), calls_.size()) << "there were no faults";
     expectAllDone();
   }
 }
 
-// A power failure keeps what was synced, and any of the rest.
+// A power failure preserves synced data, and an arbitrary part of the rest.
 TEST_P(Reliability, ContentsAreOnTheDiscBeforeTheirNames) {
   const auto after = [&](auto from, const auto& wanted) {
     return std::find_if(from, calls_.end(), wanted);
@@ -349,18 +349,18 @@ TEST_P(Reliability, ContentsAreOnTheDiscBeforeTheirNames) {
       ++named;
       const fs::path partial = call->path.string() + ".part";
       const auto last = std::find_if(std::make_reverse_iterator(call), calls_.rend(),
-                                     [&](const Call& one) { return one.path == partial; });
+                                     [&](const Call& other) { return other.path == partial; });
       ASSERT_NE(last, calls_.rend());
       EXPECT_EQ(last->kind, "fsync");
     }
     if (call->kind == "rename" || call->kind == "mkdir") {
-      const auto synced = after(call, [&](const Call& one) { return one.is("fsync", folder); });
+      const auto synced = after(call, [&](const Call& other) { return other.is("fsync", folder); });
       ASSERT_NE(synced, calls_.end());
       const auto next =
-          after(std::next(call), [](const Call& one) { return one.kind == "rename"; });
+          after(std::next(call), [](const Call& other) { return other.kind == "rename"; });
       EXPECT_LT(synced->number, next == calls_.end() ? INT_MAX : next->number);
     }
-    // What is appended is a finished case.
+    // Each append is a finished case, which must be synced.
     if (call->kind == "write" && call->path.extension() != ".part") {
       ASSERT_NE(std::next(call), calls_.end());
       EXPECT_TRUE(std::next(call)->is("fsync", call->path));
@@ -372,11 +372,11 @@ TEST_P(Reliability, ContentsAreOnTheDiscBeforeTheirNames) {
 INSTANTIATE_TEST_SUITE_P(All, Reliability, ::testing::ValuesIn(steps()),
                          [](const auto& tested) { return tested.param.name; });
 
-// Other processes, and other people, in the same folder.
+// Other processes and users in the same folder.
 
 class SharedFolder : public EndToEnd {
  protected:
-  /// A run on a recording whose first case is finished while its second takes seconds.
+  /// A run on a recording with a first case that finishes at once and a second that takes seconds.
   [[nodiscard]] static Arguments longRun(const Arguments& more = {},
                                          const std::string& algorithms = "bf,time-validator",
                                          const std::string& phase_us = "15000") {
@@ -388,14 +388,14 @@ class SharedFolder : public EndToEnd {
     return call;
   }
 
-  /// Until the first case is finished.
+  /// Waits until the first case is finished.
   [[nodiscard]] bool waitForFirstCase(Program& program) const {
     return program.waitUntil([&] {
       return fs::exists(file("results.jsonl")) && fs::file_size(file("results.jsonl")) > 0;
     });
   }
 
-  /// In both files of results the first case stands, and that there should be more.
+  /// Expects that both results files hold only the first case and are marked as incomplete.
   void expectFirstCaseKept() const {
     for (const char* name : {"results.json", "results.jsonl"}) {
       const Results results = parseResults(readFile(file(name)), name);
@@ -417,14 +417,14 @@ TEST_F(SharedFolder, ARecordingThatAnotherReplacesIsReadToItsEnd) {
   bakeRecording("other.aabbs", "20", "20", "2");
   Program program(directory_, longRun({"--repetitions", "2"}));
   ASSERT_TRUE(waitForFirstCase(program));
-  const Ended verified = run({"verify", "some.aabbs"});
+  const ProgramResult verified = run({"verify", "some.aabbs"});
   fs::rename(file("other.aabbs"), file("some.aabbs"));
-  const Ended ended = program.wait();
+  const ProgramResult ended = program.wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Json results = readJson(file("results.json"));
-  for (const Json& one : results.at("cases")) {
-    EXPECT_EQ(one.at("status"), "ok");
-    EXPECT_THAT(verified.out, HasSubstr(one.at("recording").at("hash").get<std::string>()));
+  for (const Json& result : results.at("cases")) {
+    EXPECT_EQ(result.at("status"), "ok");
+    EXPECT_THAT(verified.out, HasSubstr(result.at("recording").at("hash").get<std::string>()));
   }
 }
 
@@ -438,12 +438,12 @@ TEST_F(SharedFolder, ARecordingThatIsWrittenToEndsTheRun) {
     if (cut) {
       fs::resize_file(file("some.aabbs"), 5000);
     } else {
-      // Sound boxes, which give other pairs.
+      // Valid boxes with other pairs.
       const std::string bytes = readFile(file("some.aabbs"));
       const std::size_t half = 304 + 20 * sizeof(Aabb) * 20;
       writeInPlace("some.aabbs", half, bytes.substr(304, bytes.size() - half));
     }
-    const Ended ended = program.wait();
+    const ProgramResult ended = program.wait();
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     EXPECT_THAT(ended.err, AllOf(HasSubstr("some.aabbs"),
@@ -460,7 +460,7 @@ TEST_F(SharedFolder, APluginThatVanishesEndsTheRun) {
     fs::remove(file("results.jsonl"));
     fs::copy_file(places::faultyPlugin(), file("mine.so"));
     bakeRecording("some.aabbs", "20", "20");
-    // The third case's process begins when the second one has ended.
+    // The third case's process starts when the second case has ended.
     Program program(directory_, longRun({"--plugin", "mine.so"}, "bf,time-validator,faulty"));
     ASSERT_TRUE(waitForFirstCase(program));
     if (replacement.empty()) {
@@ -469,7 +469,7 @@ TEST_F(SharedFolder, APluginThatVanishesEndsTheRun) {
       writeFile(file("other.so"), replacement);
       fs::rename(file("other.so"), file("mine.so"));
     }
-    const Ended ended = program.wait();
+    const ProgramResult ended = program.wait();
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     EXPECT_THAT(ended.err, HasSubstr("mine.so"));
@@ -496,14 +496,14 @@ TEST_F(SharedFolder, ResultsLoadNoPluginAndSayWhichIsMissing) {
 TEST_F(SharedFolder, TwoBakesOfTheSameRecordings) {
   const Arguments bake = {"bake",     "--scenes", "freefall,gravity", "--objects", "20,30,40",
                           "--frames", "60",       "--output",         "out",       "--quiet"};
-  Program one(directory_, bake);
-  Program two(directory_, bake);
-  for (Program* program : {&one, &two}) {
-    const Ended ended = program->wait();
+  Program first(directory_, bake);
+  Program second(directory_, bake);
+  for (Program* program : {&first, &second}) {
+    const ProgramResult ended = program->wait();
     EXPECT_THAT(ended.status, AnyOf(0, 2)) << ended.err;
     for (const std::string& line : linesOf(ended.err)) EXPECT_THAT(line, HasSubstr("another"));
   }
-  const Ended again = run(bake);
+  const ProgramResult again = run(bake);
   EXPECT_EQ(again.status, 0) << again.err;
   Arguments verify = {"verify"};
   for (const std::string& name : files()) {
@@ -519,15 +519,15 @@ TEST_F(SharedFolder, TwoRunsIntoTheSameFiles) {
   const Arguments call = longRun({}, "bf,time-validator", "60000");
   Program first(directory_, call);
   ASSERT_TRUE(waitForFirstCase(first));
-  // Lines belong to one run at a time; a whole file to whoever wrote it last.
-  const Ended second = run(call);
+  // JSON Lines are locked by one run at a time; a JSON file has the results of the last writer.
+  const ProgramResult second = run(call);
   EXPECT_EQ(second.status, 2);
   EXPECT_THAT(second.err, AllOf(HasSubstr("results.jsonl"), HasSubstr("another process")));
-  const Ended other = run({"--headless", "some.aabbs", "--algorithm", "kd", "--json",
-                           "results.json", "--in-process", "--quiet"});
+  const ProgramResult other = run({"--headless", "some.aabbs", "--algorithm", "kd", "--json",
+                                   "results.json", "--in-process", "--quiet"});
   EXPECT_EQ(other.status, 0) << other.err;
-  const bool first_is_last = first.runs();
-  const Ended ended = first.wait();
+  const bool first_is_last = first.isRunning();
+  const ProgramResult ended = first.wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Results lines = parseResults(readFile(file("results.jsonl")), "results.jsonl");
   EXPECT_EQ(lines.cases.size(), 2U);
@@ -557,7 +557,8 @@ TEST_F(SharedFolder, AReadOnlyFolderIsNamed) {
            {"import", "boxes.csv", "--output", "disc/made.aabbs"}}) {
     expectRefusal(call, {"disc/", "Read-only file system"});
   }
-  const Ended reads = run({"--headless", "disc/some.aabbs", "--algorithm", "sap", "--quiet"});
+  const ProgramResult reads =
+      run({"--headless", "disc/some.aabbs", "--algorithm", "sap", "--quiet"});
   EXPECT_EQ(reads.status, 0) << reads.err;
   EXPECT_EQ(::umount(file("disc").c_str()), 0);
 }

@@ -1,4 +1,4 @@
-// The main job: recordings in, checked and measured cases out.
+// Runs: checked and measured cases on recordings.
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -19,7 +19,7 @@ class Run : public EndToEnd {
   /// The cases of results.json.
   [[nodiscard]] Json cases() const { return readJson(file("results.json")).at("cases"); }
 
-  /// Runs a small FreeFall scene with more arguments and returns its cases.
+  /// Runs a small FreeFall scene with these further arguments, and returns its cases.
   [[nodiscard]] Json casesOf(const Arguments& more) const {
     Arguments arguments = {"--headless", "freefall", "--objects", "60",
                            "--frames",   "5",        "--json",    "results.json"};
@@ -29,16 +29,17 @@ class Run : public EndToEnd {
   }
 };
 
-/// How many lines of a table are marked as the fastest.
+/// The number of table lines marked as the fastest.
 std::ptrdiff_t marks(const std::vector<std::string>& lines) {
   return std::ranges::count_if(lines,
                                [](const std::string& line) { return line.starts_with("* "); });
 }
 
 TEST_F(Run, MainJob) {
-  const Ended ended = run({"--headless", "freefall", "brownian", "gravity", "--objects", "80",
-                           "--frames", "6", "--check", "full", "--json", "results.json", "--csv",
-                           "results.csv", "--csv-frames", "frames.csv", "--record", "recordings"});
+  const ProgramResult ended =
+      run({"--headless", "freefall", "brownian", "gravity", "--objects", "80", "--frames", "6",
+           "--check", "full", "--json", "results.json", "--csv", "results.csv", "--csv-frames",
+           "frames.csv", "--record", "recordings"});
   ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
 
   std::size_t algorithms = 0;
@@ -59,31 +60,31 @@ TEST_F(Run, MainJob) {
   EXPECT_EQ(results.at("options").at(1), "freefall");
   ASSERT_EQ(results.at("cases").size(), 3 * algorithms);
   std::map<std::string, std::set<double>> pairs;  // by recording
-  for (const Json& one : results.at("cases")) {
-    SCOPED_TRACE(one.at("id"));
+  for (const Json& result : results.at("cases")) {
+    SCOPED_TRACE(result.at("id"));
     for (const char* key : {"family", "isa", "threads", "params", "reason", "missed", "false",
                             "allowed_extra", "invalid", "differences", "peak_bytes", "summary"}) {
-      EXPECT_TRUE(one.contains(key)) << key;
+      EXPECT_TRUE(result.contains(key)) << key;
     }
     for (const char* key : {"name", "object_type", "objects", "frames", "seed", "hash", "source"}) {
-      EXPECT_TRUE(one.at("recording").contains(key)) << key;
+      EXPECT_TRUE(result.at("recording").contains(key)) << key;
     }
     for (const char* key : {"seconds_per_frame", "median", "p95", "p99", "min", "stddev", "ci95"}) {
-      EXPECT_TRUE(one.at("summary").contains(key)) << key;
+      EXPECT_TRUE(result.at("summary").contains(key)) << key;
     }
-    EXPECT_EQ(one.at("status"), "ok");
-    EXPECT_EQ(one.at("checked"), true);
-    EXPECT_EQ(one.at("missed"), 0);
-    EXPECT_EQ(one.at("false"), 0);
-    EXPECT_EQ(one.at("recording").at("source").at("density"), "0.1");
-    EXPECT_GT(one.at("summary").at("seconds_per_frame"), 0);
+    EXPECT_EQ(result.at("status"), "ok");
+    EXPECT_EQ(result.at("checked"), true);
+    EXPECT_EQ(result.at("missed"), 0);
+    EXPECT_EQ(result.at("false"), 0);
+    EXPECT_EQ(result.at("recording").at("source").at("density"), "0.1");
+    EXPECT_GT(result.at("summary").at("seconds_per_frame"), 0);
     for (const char* phase :
          {"update_objects", "clean_cache", "update_structures", "search_overlaps", "total"}) {
-      ASSERT_EQ(one.at("frames").at(phase).size(), 1U);
-      EXPECT_EQ(one.at("frames").at(phase).at(0).size(), 6U);
+      ASSERT_EQ(result.at("frames").at(phase).size(), 1U);
+      EXPECT_EQ(result.at("frames").at(phase).at(0).size(), 6U);
     }
-    if (one.at("allowed_extra") == 0)
-      pairs[one.at("recording").at("hash")].insert(one.at("pairs").at("mean").get<double>());
+    if (result.at("allowed_extra") == 0)
+      pairs[result.at("recording").at("hash")].insert(result.at("pairs").at("mean").get<double>());
   }
   EXPECT_EQ(pairs.size(), 3U);
   for (const auto& [hash, means] : pairs) {
@@ -103,18 +104,18 @@ TEST_F(Run, EventsOfEveryAlgorithm) {
   const auto of_pairs = casesOf({"--algorithm", "bf"});
   EXPECT_EQ(of_pairs.at(0).at("answer"), "pairs");
   for (const char* check : {"full", "hash"}) {
-    // Not quietly: where kernels are built for the first time, PoCL tells of warnings.
-    const Ended ended =
+    // Not runQuietly(), because PoCL prints warnings when it builds kernels for the first time.
+    const ProgramResult ended =
         run({"--headless", "freefall", "--objects", "60", "--frames", "5", "--answer", "events",
              "--check", check, "--repetitions", "1", "--json", "results.json"});
     ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
-    for (const Json& one : cases()) {
-      SCOPED_TRACE(one.at("id").get<std::string>());
-      EXPECT_EQ(one.at("answer"), "events");
-      EXPECT_THAT(one.at("id").get<std::string>(), HasSubstr("/events"));
-      EXPECT_THAT(one.at("status"), testing::AnyOf("ok", "unsupported"));
-      EXPECT_EQ(one.at("checked"), true);
-      EXPECT_LT(one.at("pairs").at("max"), of_pairs.at(0).at("pairs").at("max"));
+    for (const Json& result : cases()) {
+      SCOPED_TRACE(result.at("id").get<std::string>());
+      EXPECT_EQ(result.at("answer"), "events");
+      EXPECT_THAT(result.at("id").get<std::string>(), HasSubstr("/events"));
+      EXPECT_THAT(result.at("status"), testing::AnyOf("ok", "unsupported"));
+      EXPECT_EQ(result.at("checked"), true);
+      EXPECT_LT(result.at("pairs").at("max"), of_pairs.at(0).at("pairs").at("max"));
     }
   }
 }
@@ -131,29 +132,29 @@ TEST_F(Run, ARecordingGivesTheSameAnswersAsItsSimulation) {
 }
 
 TEST_F(Run, FewBodies) {
-  const Ended ended = run({"--headless", "freefall", "--objects", "2,0,1,1", "--frames", "3",
-                           "--json", "results.json"});
+  const ProgramResult ended = run({"--headless", "freefall", "--objects", "2,0,1,1", "--frames",
+                                   "3", "--json", "results.json"});
   ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
   std::set<int> counts;
   std::set<std::string> ids;
-  for (const Json& one : cases()) {
-    EXPECT_EQ(one.at("status"), "ok") << one.at("id");
-    counts.insert(one.at("recording").at("objects").get<int>());
-    EXPECT_TRUE(ids.insert(one.at("id")).second) << "twice: " << one.at("id");
+  for (const Json& result : cases()) {
+    EXPECT_EQ(result.at("status"), "ok") << result.at("id");
+    counts.insert(result.at("recording").at("objects").get<int>());
+    EXPECT_TRUE(ids.insert(result.at("id")).second) << "twice: " << result.at("id");
   }
   EXPECT_EQ(counts, (std::set{0, 1, 2}));
 }
 
 TEST_F(Run, ARecordingWithoutFramesHasNoTimes) {
   writeFile(file("still.aabbs"), recordingOf(2, 0, unitBoxes(2)));
-  const Ended ended = runQuietly({"--headless", "still.aabbs", "--algorithm", "sap"});
+  const ProgramResult ended = runQuietly({"--headless", "still.aabbs", "--algorithm", "sap"});
   EXPECT_THAT(ended.out, HasSubstr("–"));
   EXPECT_THAT(ended.out, Not(HasSubstr("0 ns")));
   EXPECT_EQ(marks(linesOf(ended.out)), 0);
 }
 
 TEST_F(Run, SelfChecksStandLastAndAreNeverTheFastest) {
-  const Ended ended =
+  const ProgramResult ended =
       runQuietly({"--headless", "freefall", "--objects", "60", "--frames", "3", "--algorithm",
                   "time-validator,none,sap,bf", "--param", "phase_us=1"});
   const auto lines = linesOf(ended.out);
@@ -192,10 +193,10 @@ TEST_F(Run, ARequestRunsWhatItsCommandLineDoes) {
 
 TEST_F(Run, RepetitionsAndWarmup) {
   const Json done = casesOf({"--algorithm", "sap,bf", "--repetitions", "3", "--warmup", "1"});
-  for (const Json& one : done) {
-    EXPECT_EQ(one.at("frames").at("total").size(), 3U);
-    EXPECT_EQ(one.at("initialize_ns").size(), 3U);
-    EXPECT_EQ(one.at("summary").at("ci95").size(), 2U);
+  for (const Json& result : done) {
+    EXPECT_EQ(result.at("frames").at("total").size(), 3U);
+    EXPECT_EQ(result.at("initialize_ns").size(), 3U);
+    EXPECT_EQ(result.at("summary").at("ci95").size(), 2U);
   }
 }
 
@@ -212,25 +213,25 @@ TEST_F(Run, EveryInstructionSetIsRightOrUnsupported) {
   const Json done = casesOf({"--algorithm", "sap-simd,bf-simd", "--isa",
                              fmt::format("{}", fmt::join(kIsas.names(), ","))});
   ASSERT_EQ(done.size(), 2 * kIsas.entries.size());
-  for (const Json& one : done) {
-    const auto isa = kIsas.find(one.at("isa").get<std::string>());
+  for (const Json& result : done) {
+    const auto isa = kIsas.find(result.at("isa").get<std::string>());
     ASSERT_TRUE(isa);
-    EXPECT_EQ(one.at("status"), isaSupported(*isa) ? "ok" : "unsupported") << one.at("id");
-    EXPECT_EQ(one.at("reason") == "", isaSupported(*isa));
+    EXPECT_EQ(result.at("status"), isaSupported(*isa) ? "ok" : "unsupported") << result.at("id");
+    EXPECT_EQ(result.at("reason") == "", isaSupported(*isa));
   }
 }
 
 TEST_F(Run, CheckModes) {
-  for (const Json& one : casesOf({"--check", "hash"})) {
-    EXPECT_EQ(one.at("status"), "ok") << one.at("id");
-    EXPECT_EQ(one.at("checked"), true);
+  for (const Json& result : casesOf({"--check", "hash"})) {
+    EXPECT_EQ(result.at("status"), "ok") << result.at("id");
+    EXPECT_EQ(result.at("checked"), true);
   }
-  for (const Json& one : casesOf({"--check", "off"})) EXPECT_EQ(one.at("checked"), false);
+  for (const Json& result : casesOf({"--check", "off"})) EXPECT_EQ(result.at("checked"), false);
 }
 
 TEST_F(Run, MemoryIsMeasured) {
-  for (const Json& one : casesOf({"--algorithm", "sap,sap-mt"})) {
-    EXPECT_TRUE(one.at("peak_bytes").is_number_unsigned()) << one.at("id");
+  for (const Json& result : casesOf({"--algorithm", "sap,sap-mt"})) {
+    EXPECT_TRUE(result.at("peak_bytes").is_number_unsigned()) << result.at("id");
   }
 }
 
@@ -252,13 +253,13 @@ TEST_F(Run, AlgorithmsAreChosen) {
 TEST_F(Run, ListPrintsTheCasesAndRunsNothing) {
   const Arguments call = {"--headless", "freefall", "--objects", "60",     "--frames",
                           "5",          "--list",   "--json",    "no.json"};
-  const Ended listed = run(call);
+  const ProgramResult listed = run(call);
   EXPECT_EQ(listed.status, 0);
   EXPECT_EQ(listed.err, "");
   EXPECT_THAT(entries(), IsEmpty());
 
   std::vector<std::string> ids;
-  for (const Json& one : casesOf({})) ids.push_back(one.at("id"));
+  for (const Json& result : casesOf({})) ids.push_back(result.at("id"));
   EXPECT_EQ(linesOf(listed.out), ids);
 }
 
@@ -292,7 +293,7 @@ TEST_F(Run, ResultsMayGoToStandardOutputAndNothingElseThen) {
   const auto printed = [&](const Arguments& more) {
     Arguments arguments = call;
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Ended ended = run(arguments);
+    const ProgramResult ended = run(arguments);
     EXPECT_EQ(ended.status, 0) << ended.err;
     return ended;
   };
@@ -301,7 +302,7 @@ TEST_F(Run, ResultsMayGoToStandardOutputAndNothingElseThen) {
     ASSERT_TRUE(results.is_object()) << output;
     EXPECT_EQ(results.at("cases").size(), 4U);
   }
-  const Ended csv = printed({"--csv", "-", "--json", "results.json"});
+  const ProgramResult csv = printed({"--csv", "-", "--json", "results.json"});
   EXPECT_EQ(linesOf(csv.out).size(), 5U) << csv.out;
   EXPECT_THAT(csv.err, HasSubstr("written: results.json"));
   EXPECT_EQ(linesOf(printed({"--csv-frames", "-"}).out).size(), 1U + 4 * 3);
@@ -322,26 +323,26 @@ TEST_F(Run, TheTimeLimitStopsACaseAndSparesItLargerScenes) {
   const Arguments call = {"--headless",   "freefall", "--objects",   "40,20,30",
                           "--frames",     "5",        "--algorithm", "bf",
                           "--time-limit", "1e-12",    "--json",      "results.json"};
-  const Ended ended = run(call);
+  const ProgramResult ended = run(call);
   EXPECT_EQ(ended.status, 4) << ended.err;
   const Json done = cases();
   ASSERT_EQ(done.size(), 3U);
   EXPECT_EQ(done[0].at("recording").at("objects"), 20);
   EXPECT_EQ(done[0].at("frames").at("total").at(0).size(), 3U);
-  for (const Json& one : done) EXPECT_EQ(one.at("status"), "timeout");
+  for (const Json& result : done) EXPECT_EQ(result.at("status"), "timeout");
   for (const std::size_t larger : {1U, 2U}) {
     EXPECT_THAT(done[larger].at("reason"), HasSubstr("not run"));
     EXPECT_THAT(done[larger].at("reason"), HasSubstr("20 bodies"));
   }
   EXPECT_EQ(marks(linesOf(ended.out)), 0);
 
-  // A limit that is crossed on purpose is no failure; the cases are timeouts all the same.
+  // A time limit exceeded on purpose is no failure, but the cases are timeouts.
   Arguments on_purpose = call;
   on_purpose.emplace_back("--allow-timeout");
-  const Ended allowed = run(on_purpose);
+  const ProgramResult allowed = run(on_purpose);
   EXPECT_EQ(allowed.status, 0) << allowed.err;
   EXPECT_THAT(allowed.out, HasSubstr("timeout"));
-  for (const Json& one : cases()) EXPECT_EQ(one.at("status"), "timeout");
+  for (const Json& result : cases()) EXPECT_EQ(result.at("status"), "timeout");
 }
 
 TEST_F(Run, PinsThreadsWhereTheyFit) {
@@ -359,12 +360,12 @@ TEST_F(Run, PinsThreadsWhereTheyFit) {
 }
 
 TEST_F(Run, WarnsOnceOfWhatDisturbsTimes) {
-  const Ended ended =
+  const ProgramResult ended =
       run({"--headless", "freefall", "brownian", "--objects", "20", "--frames", "2", "--algorithm",
            "bf-mt,sap-mt", "--threads", "500", "--quiet", "--json", "results.json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const auto tells = [](const std::string& warning) {
-    return warning.find("500 threads take turns") != std::string::npos;
+    return warning.find("500 threads share") != std::string::npos;
   };
   EXPECT_EQ(std::ranges::count_if(ended.warnings, tells), 1);
   ASSERT_EQ(cases().size(), 4U);

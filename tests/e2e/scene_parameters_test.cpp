@@ -1,4 +1,4 @@
-// Scenes described in files: run, baked, repeated from the sidecar of a recording.
+// Files of scene parameters: run, baked, and rerun from a recording's sidecar.
 
 #include "e2e/end_to_end.h"
 
@@ -42,8 +42,8 @@ TEST_F(SceneParameters, AFileRunsAsTheSameOptionsWould) {
 
 TEST_F(SceneParameters, OptionsOverrideAFile) {
   writeParameters("scene.json", "brownian", {{"objects", 50}, {"frames", 6}, {"seed", 3}});
-  const Ended listed = runQuietly({"--headless", "scene.json", "--objects", "20,30", "--list",
-                                   "--algorithm", "sap", "--frames", "4"});
+  const ProgramResult listed = runQuietly({"--headless", "scene.json", "--objects", "20,30",
+                                           "--list", "--algorithm", "sap", "--frames", "4"});
   ASSERT_EQ(linesOf(listed.out).size(), 2U) << listed.out;
   EXPECT_THAT(listed.out, HasSubstr("N20"));
   EXPECT_THAT(listed.out, HasSubstr("N30"));

@@ -60,14 +60,14 @@ TEST_F(Screenshot, EitherGlSourceDraws) {
 }
 
 TEST_F(Screenshot, WithoutGlThereIsNoPictureButEverythingElse) {
-  // Broken libraries of the same name, found first, hide the real ones.
+  // Broken libraries of the same names precede the real ones in the search path.
   fs::create_directory(file("hidden"));
   for (const char* library : {"libEGL.so.1", "libOSMesa.so.8"}) {
     writeFile(file("hidden") / library, "");
   }
   for (const std::string source : {"auto", "egl", "osmesa"}) {
     const std::string json = source + ".json";
-    const Ended ended =
+    const ProgramResult ended =
         run({"--headless", "freefall", "--objects", "20", "--frames", "2", "--algorithm", "sap",
              "--screenshot", "p.png", "--gl", source, "--json", json, "--quiet"},
             {.environment = {{"LD_LIBRARY_PATH", file("hidden").string()}}});

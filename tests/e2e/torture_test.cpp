@@ -1,4 +1,4 @@
-// The command 'torture': what it finds, what it writes, and how it goes on.
+// The command 'torture': its findings, its files, and how it resumes.
 
 #include <algorithm>
 
@@ -22,19 +22,19 @@ class Torture : public EndToEnd {
     return readJson(file(output) / "torture.json");
   }
 
-  /// Two boxes that overlap in two frames.
+  /// Writes a recording of two boxes that overlap in two frames.
   void writeTwoBoxes() const { writeFile(file("two.aabbs"), recordingOf(2, 1, unitBoxes(4))); }
 };
 
 TEST_F(Torture, ShrinksWrongAnswersAndShowsThemByACommand) {
-  const Ended ended = run(call({"--plugin", places::faultyPlugin(), "--algorithm",
-                                "faulty-extra,lossy*", "--rounds", "12"}));
+  const ProgramResult ended = run(call({"--plugin", places::faultyPlugin(), "--algorithm",
+                                        "faulty-extra,lossy*", "--rounds", "12"}));
   EXPECT_EQ(ended.status, 1) << ended.err;
   const Json found = log().at("found");
   for (const std::string id : {"faulty-extra", "lossy-removal", "lossy-layers"}) {
     SCOPED_TRACE(id);
     const auto fault =
-        std::ranges::find_if(found, [&](const Json& one) { return one.at("algorithm") == id; });
+        std::ranges::find_if(found, [&](const Json& item) { return item.at("algorithm") == id; });
     ASSERT_NE(fault, found.end());
     EXPECT_EQ(fault->at("kind"), "wrong answer");
     EXPECT_TRUE(fault->at("minimal"));
@@ -43,9 +43,9 @@ TEST_F(Torture, ShrinksWrongAnswersAndShowsThemByACommand) {
     EXPECT_THAT(ended.out, HasSubstr(command));
     EXPECT_EQ(shell(command), 1) << readFile(file("shell.out"));
   }
-  // Of the same kind only the first few are written.
+  // The number of reproducers per algorithm and fault kind is limited.
   EXPECT_LE(std::ranges::count_if(
-                found, [](const Json& one) { return one.at("algorithm") == "lossy-removal"; }),
+                found, [](const Json& entry) { return entry.at("algorithm") == "lossy-removal"; }),
             3);
 }
 
@@ -57,10 +57,10 @@ TEST_F(Torture, TellsKindsOfFaultsApart) {
                                                                      {"hang", "hang"},
                                                                      {"break", "broken invariant"},
                                                                      {"keep", "leak"}}) {
-    if (kSanitized && kind == "leak") continue;  // their malloc does not tell what is taken
+    if (kSanitized && kind == "leak") continue;  // their malloc does not report allocated bytes
     SCOPED_TRACE(deed);
     const std::string name = places::unrulyPlugin() + ":unruly/frame=1/deed=" + deed;
-    const Ended ended = run(call(
+    const ProgramResult ended = run(call(
         {"two.aabbs", "--only-sources", "--case", name, "--rounds", "1", "--hard-limit", "0.5"},
         deed));
     EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
@@ -69,13 +69,13 @@ TEST_F(Torture, TellsKindsOfFaultsApart) {
     EXPECT_EQ(found[0].at("kind"), kind) << found[0];
     EXPECT_EQ(found[0].at("world"), "given");
     EXPECT_EQ(found[0].at("frames"), 1);
-    if (kind == "hang") continue;  // the command waits for a minute
+    if (kind == "hang") continue;  // detection takes a minute
     EXPECT_EQ(shell(found[0].at("command")), 1) << readFile(file("shell.out"));
   }
 }
 
 TEST_F(Torture, FindsNothingWrongWithAnAlgorithmThatIsRight) {
-  const Ended ended = run(call({"--algorithm", "sap,kd", "--rounds", "6"}));
+  const ProgramResult ended = run(call({"--algorithm", "sap,kd", "--rounds", "6"}));
   EXPECT_EQ(ended.status, 0) << ended.out;
   EXPECT_THAT(ended.out, HasSubstr("nothing went wrong"));
   EXPECT_THAT(ended.out, HasSubstr("6 rounds"));
@@ -99,7 +99,7 @@ TEST_F(Torture, GoesOnWhereItEnded) {
   expectRefusal(call({"--algorithm", "bf"}, "twice"), {"other algorithms"});
 }
 
-// Who has mended a plug-in wants to know whether it is right now.
+// A rebuilt plug-in is tested from scratch, to verify its fix.
 TEST_F(Torture, BeginsAnewWithAnotherBuildOfAPlugin) {
   fs::copy_file(places::faultyPlugin(), file("mine.so"));
   const Arguments faulty =
@@ -120,10 +120,10 @@ TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
   Arguments endless = call(subject, "cut");
   endless.insert(endless.end(), {"--minutes", "100"});
   Program program(directory_, endless);
-  // A round has up to forty worlds, and plays each of them a few times.
+  // A round has up to forty worlds, and runs each several times.
   ASSERT_TRUE(program.waitForText("printed on purpose", 80));
   program.signal(SIGINT);
-  const Ended ended = program.wait();
+  const ProgramResult ended = program.wait();
   EXPECT_EQ(ended.status, 130);
   EXPECT_THAT(ended.err, HasSubstr("the same command resumes from cut/torture.json"));
 

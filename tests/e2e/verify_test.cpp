@@ -1,4 +1,4 @@
-// verify: what was baked is as it was, and what it is like.
+// The command 'verify': checks and descriptions of recordings.
 
 #include <sstream>
 
@@ -16,15 +16,15 @@ TEST_F(Verify, ComparesWithWhatTheSidecarStates) {
       {"bake", "--scenes", "freefall", "--objects", "20", "--frames", "3", "--output", "out"});
   const std::string path = recordingIn("out", "FreeFall Cubes N20 F3frames");
   const fs::path sidecar = file(fs::path(path).replace_extension(".json"));
-  const Ended good = run({"verify", path});
+  const ProgramResult good = run({"verify", path});
   EXPECT_EQ(good.status, 0);
   EXPECT_THAT(good.out, HasSubstr(", as baked\n"));
 
-  // One bit of a coordinate: still a sound recording, but not the one that was baked.
+  // One bit of a coordinate: still a valid recording, but not the baked one.
   std::string bytes = readFile(file(path));
   bytes[304 + 32 * 20] ^= 1;
   writeFile(file(path), bytes);
-  const Ended changed = run({"verify", path});
+  const ProgramResult changed = run({"verify", path});
   EXPECT_EQ(changed.status, 2);
   EXPECT_EQ(changed.out, "");
   EXPECT_EQ(linesOf(changed.err).size(), 1U) << changed.err;
@@ -32,15 +32,15 @@ TEST_F(Verify, ComparesWithWhatTheSidecarStates) {
 
   writeFile(sidecar, R"({"schema": "broadmark-bake/1"})");
   EXPECT_THAT(run({"verify", path}).err, HasSubstr("hash"));
-  // A file of another kind beside it is no sidecar.
+  // A file of another format beside it is no sidecar.
   writeFile(sidecar, R"({"schema": "broadmark-results/1"})");
-  const Ended alone = run({"verify", path});
+  const ProgramResult alone = run({"verify", path});
   EXPECT_EQ(alone.status, 0);
   EXPECT_THAT(alone.out, Not(HasSubstr("as baked")));
 }
 
-/// A world of 10 × 10 × 10 with a unit cube that rests at 0 and a box of 2 × 2 × 2 that is on top
-/// of it in frames 0 and 1 and outside in frames 2 to 4.
+/// A world of 10 × 10 × 10 with a unit cube at rest at 0 and a box of 2 × 2 × 2 that touches it in
+/// frames 0 and 1 and is outside of the world in frames 2 to 4.
 std::string leavingBox() {
   const Aabb near = {{1, 0, 0, 0}, {3, 2, 2, 0}};
   const Aabb far = {{9, 0, 0, 0}, {11, 2, 2, 0}};
@@ -51,7 +51,8 @@ std::string leavingBox() {
 
 TEST_F(Verify, DescribesAKnownScene) {
   writeFile(file("known.aabbs"), leavingBox());
-  const Ended ended = runQuietly({"verify", "--describe", "known.aabbs", "--json", "known.json"});
+  const ProgramResult ended =
+      runQuietly({"verify", "--describe", "known.aabbs", "--json", "known.json"});
   const auto lines = linesOf(ended.out);
   ASSERT_GE(lines.size(), 8U) << ended.out;
   const auto words = [&](std::size_t line) {
@@ -87,7 +88,7 @@ TEST_F(Verify, DescribesAWorldThatChanges) {
   RecordingWriter writer(file("known.broadmark"), frames.scene());
   recordAll(frames, writer);
   writer.finish();
-  const Ended ended =
+  const ProgramResult ended =
       runQuietly({"verify", "--describe", "known.broadmark", "--json", "known.json"});
   const auto lines = linesOf(ended.out);
   ASSERT_GE(lines.size(), 17U) << ended.out;
@@ -113,8 +114,8 @@ TEST_F(Verify, DescribesWhatItCan) {
   writeFile(file("known.aabbs"), leavingBox());
   writeFile(file("empty.aabbs"), recordingOf(0, 3, {}));
   writeFile(file("short.aabbs"), leavingBox().substr(0, 400));
-  const Ended ended = run({"verify", "--describe", "--quiet", "short.aabbs", "empty.aabbs",
-                           "known.aabbs", "--json", "all.json"});
+  const ProgramResult ended = run({"verify", "--describe", "--quiet", "short.aabbs", "empty.aabbs",
+                                   "known.aabbs", "--json", "all.json"});
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("short.aabbs"));
@@ -131,7 +132,7 @@ TEST_F(Verify, BadOptions) {
 
 TEST_F(Verify, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
   bakeRecording("a.aabbs");
-  const Ended ended = runQuietly({"verify", "--describe", "--json", "-", "a.aabbs"});
+  const ProgramResult ended = runQuietly({"verify", "--describe", "--json", "-", "a.aabbs"});
   EXPECT_FALSE(Json::parse(ended.out, nullptr, false).is_discarded()) << ended.out;
 }
 

@@ -1,5 +1,5 @@
-// The program in a real window, under Xvfb, with somebody at its mouse and keyboard (xdotool). What
-// comes of it is asserted by a script that runs in the program meanwhile.
+// The program in a real window under Xvfb, with mouse and keyboard input from xdotool. A script in
+// the program asserts the effects.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace broadmark::tests {
 namespace {
 
-/// An X server of our own, without a screen.
+/// A private X server without a physical screen.
 class Screen {
  public:
   Screen() {
@@ -43,7 +43,7 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  /// "" when it could not be started.
+  /// The display's name; "" if the server could not be started.
   [[nodiscard]] const std::string& name() const { return name_; }
 
   void tool(const std::string& arguments) const {
@@ -59,12 +59,13 @@ class Screen {
 class WindowTest : public EndToEnd {
  protected:
   void start(const Screen& screen, const Arguments& arguments) {
-    program_.emplace(directory_, arguments,
-                     Surroundings{.environment = {{"DISPLAY", screen.name()},
-                                                  {"XDG_CONFIG_HOME", file("config").string()}}});
+    program_.emplace(
+        directory_, arguments,
+        ProgramEnvironment{.environment = {{"DISPLAY", screen.name()},
+                                           {"XDG_CONFIG_HOME", file("config").string()}}});
   }
 
-  /// Waits for what the script tells of the widgets' places; the middle of one of them.
+  /// Waits for the script's file of widget positions, and returns the middle of a widget.
   std::pair<int, int> middleOf(const std::string& places, const std::string& widget) {
     if (!program_->waitUntil([&] { return fs::exists(file(places)); })) {
       ADD_FAILURE() << places << " does not come";
@@ -91,7 +92,7 @@ class WindowTest : public EndToEnd {
     screen.tool("click 1");
   }
 
-  /// With the left button down, in several steps, as a hand does.
+  /// Drags with the left button, in several steps, as a user does.
   void drag(const Screen& screen, const std::string& places, const std::string& widget, int right,
             int down) {
     constexpr int kSteps = 5;
@@ -135,9 +136,9 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
             "expect popup = yes\n"
             "wait 5\n"
             "places choice\n"
-            "expect lanes = 1\n"
+            "expect algorithms = 1\n"
             "wait idle\n"
-            "expect lane.sap.status = ok\n"
+            "expect algorithm.sap.status = ok\n"
             "places chosen\n"
             "expect panel.left = Scene\n"
             "wait 5\n"
@@ -170,7 +171,7 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
   EXPECT_TRUE(program_->waitUntil([&] { return fs::exists(file("mine.aabbs")); }));
   moveTo(screen, 640, 300);
   press(screen, "ctrl+q");
-  const Ended ended = program_->wait();
+  const ProgramResult ended = program_->wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(run({"verify", "mine.aabbs"}).status, 0);
   EXPECT_THAT(readFile(file("config/broadmark/inspector.json")),
@@ -202,7 +203,7 @@ TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
             "places moved\n"
             "expect author.modified = no\n"
             "places saved\n"
-            // Text that is typed in a dialog, then the dialog.
+            // Cancel typing in a dialog, then the dialog.
             "expect dialog = yes\n"
             "wait 5\n"
             "places opening\n"
@@ -211,7 +212,7 @@ TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
             "places typing\n"
             "expect dialog = no\n"
             "places left\n"
-            // A menu, then what is behind it.
+            // Close a menu, then the window behind it.
             "expect help = yes\n"
             "places helped\n"
             "expect popup = yes\n"
@@ -263,14 +264,14 @@ TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
   press(screen, "Return");
   middleOf("reopened", "View/scene");
   press(screen, "ctrl+q");
-  const Ended ended = program_->wait();
+  const ProgramResult ended = program_->wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
 }
 
 TEST_F(WindowTest, WithoutADisplayOneLineSaysWhatToDo) {
   Program program(file(""), {"brownian"},
                   {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
-  const Ended ended = program.wait();
+  const ProgramResult ended = program.wait();
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, ::testing::HasSubstr("--headless"));
   EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;

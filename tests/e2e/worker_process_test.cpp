@@ -1,5 +1,5 @@
-// The host in another process against the one in this: the same answers, and what is said when the
-// other process is no worker.
+// The executor in a worker process against the in-process one: the same answers, and the errors if
+// the other process is no worker.
 
 #include "broadmark/harness/worker_process.h"
 
@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 
 WorkerOptions thisProgram() { return {.command = {places::program(), "worker"}}; }
 
-/// Clusters that move: all bodies and pairs; some of both.
+/// Moving clusters: all bodies and pairs, or with absent bodies and a filter.
 std::vector<ChangingWorld> movingClusters() {
   constexpr std::size_t kBodies = 300;
   constexpr inputs::Input kInput = {"clustered", inputs::clustered};
@@ -34,16 +34,16 @@ std::vector<ChangingWorld> movingClusters() {
            framesWith(kInput, kBodies, 4, presences::random)}};
 }
 
-/// Pairs, or those that began and those that ended.
+/// The pairs, or the begun and the ended pairs.
 std::vector<std::vector<Pair>> answerOf(CaseExecutor& host, AnswerKind kind) {
   if (kind == AnswerKind::pairs) return {sorted(host.answer())};
   const PairEvents events = host.events();
   return {sorted(events.began), sorted(events.ended)};
 }
 
-void expectSameAnswers(const Case& run) {
-  InProcessExecutor here(run);
-  const auto there = makeWorkerProcess(run, thisProgram());
+void expectSameAnswers(const Case& test_case) {
+  InProcessExecutor here(test_case);
+  const auto there = makeWorkerProcess(test_case, thisProgram());
   for (const ChangingWorld& world : movingClusters()) {
     const std::vector<std::vector<Aabb>>& frames = world.frames;
     SceneInfo scene = sceneOf(frames);
@@ -57,8 +57,9 @@ void expectSameAnswers(const Case& run) {
       GTEST_SKIP() << "cannot run here";
     }
     EXPECT_GE(there->start(scene, first), 0);
-    if (run.answer == AnswerKind::events) {
-      EXPECT_EQ(answerOf(*there, run.answer), answerOf(here, run.answer)) << "the initial pose";
+    if (test_case.answer == AnswerKind::events) {
+      EXPECT_EQ(answerOf(*there, test_case.answer), answerOf(here, test_case.answer))
+          << "the initial pose";
     }
     for (std::uint32_t index = 1; index < frames.size(); ++index) {
       const Frame frame = changed_bodies.complete({index, frames[index]});
@@ -66,10 +67,10 @@ void expectSameAnswers(const Case& run) {
       const StepResult run_there = there->step(frame);
       EXPECT_EQ(run_there.pairs, run_here.pairs);
       EXPECT_GT(run_there.times[Phase::total], 0);
-      if (run.answer == AnswerKind::pairs) {
+      if (test_case.answer == AnswerKind::pairs) {
         EXPECT_EQ(there->digest(), here.digest());
       }
-      EXPECT_EQ(answerOf(*there, run.answer), answerOf(here, run.answer));
+      EXPECT_EQ(answerOf(*there, test_case.answer), answerOf(here, test_case.answer));
       EXPECT_EQ(there->counters().size(), here.counters().size());
     }
     EXPECT_EQ(there->setup().size(), here.setup().size());
@@ -114,7 +115,7 @@ TEST(WorkerProcess, TakesScenesOfAnySize) {
   const auto host = makeWorkerProcess(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
                                       thisProgram());
   for (const std::size_t bodies : {0, 1, 2, 3000, 3}) {
-    std::vector<Aabb> boxes;  // none overlaps another
+    std::vector<Aabb> boxes;  // disjoint
     for (std::size_t i = 0; i < bodies; ++i) {
       const auto x = static_cast<float>(2 * i);
       boxes.push_back({{x, 0, 0, 0}, {x + 1, 1, 1, 0}});
@@ -126,7 +127,7 @@ TEST(WorkerProcess, TakesScenesOfAnySize) {
   }
 }
 
-/// What is said of a program that does `script`.
+/// The error for a worker program that runs `script`.
 std::string complaint(const std::string& script) {
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
   const auto host = makeWorkerProcess(
@@ -136,7 +137,7 @@ std::string complaint(const std::string& script) {
 }
 
 TEST(WorkerProcess, ADifferentProgramIsNamed) {
-  // The hard limit is not on the start of a process.
+  // The hard limit does not include the start of the process.
   EXPECT_THAT(complaint("exit 7"), AllOf(HasSubstr("/bin/sh"), HasSubstr("status 7")));
   EXPECT_THAT(complaint("printf '{\"protocol\": 99}' >&3; cat <&3 >/dev/null"),
               AllOf(HasSubstr("/bin/sh"), HasSubstr("99"), HasSubstr("version")));
@@ -150,23 +151,24 @@ TEST(WorkerProcess, ADifferentProgramIsNamed) {
               HasSubstr("/no/such/program"));
 }
 
-/// How a run ends on a program that greets well and then does `script`.
+/// The error of a run with a worker program that sends a valid greeting and then runs `script`.
 std::string ending(const std::string& script,
                    std::chrono::milliseconds limit = std::chrono::hours(1)) {
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
-  CaseRun run(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), {},
-              [&](const Case& one, CancelQuery) {
-                return makeWorkerProcess(
-                    one,
-                    WorkerOptions{.command = {"/bin/sh", "-c",
-                                              fmt::format("printf '{{\"protocol\": {}}}' >&3; {}",
-                                                          worker::kProtocolVersion, script)},
-                                  .hard_limit = limit,
-                                  .begin_limit = limit});
-              });
-  EXPECT_FALSE(run.start(sceneOf({boxes, boxes}), {0, boxes}));
-  EXPECT_NE(run.status(), Status::ok);
-  return run.reason();
+  CaseRun case_run(
+      makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), {},
+      [&](const Case& test_case, CancelQuery) {
+        return makeWorkerProcess(
+            test_case,
+            WorkerOptions{.command = {"/bin/sh", "-c",
+                                      fmt::format("printf '{{\"protocol\": {}}}' >&3; {}",
+                                                  worker::kProtocolVersion, script)},
+                          .hard_limit = limit,
+                          .begin_limit = limit});
+      });
+  EXPECT_FALSE(case_run.start(sceneOf({boxes, boxes}), {0, boxes}));
+  EXPECT_NE(case_run.status(), Status::ok);
+  return case_run.reason();
 }
 
 TEST(WorkerProcess, WhatDoesNotKeepToTheProtocolIsAnError) {

@@ -1,5 +1,5 @@
-// Each case in a process of its own: whatever an algorithm does, it has its status, the others
-// theirs, and the run its exit status.
+// Cases in separate processes: a misbehaving algorithm affects its own status and the run's exit
+// status, but no other case.
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -17,7 +17,7 @@ using ::testing::AllOf;
 
 class Worker : public EndToEnd {
  protected:
-  /// A small run of the unruly algorithm, and of bf behind it.
+  /// A small run of the unruly algorithm, followed by bf.
   [[nodiscard]] static Arguments call(const std::vector<std::string>& parameters,
                                       const Arguments& more = {}) {
     Arguments call = {"--headless",  "brownian",  "--objects", "20",
@@ -32,7 +32,7 @@ class Worker : public EndToEnd {
   }
 
   struct Outcome {
-    Ended ended;
+    ProgramResult ended;
     Json unruly;
     Json other;
   };
@@ -40,13 +40,13 @@ class Worker : public EndToEnd {
                                   const Arguments& more = {}) const {
     Outcome outcome{.ended = run(call(parameters, more))};
     const Json results = readJson(file("r.json"));
-    for (const Json& one : results.at("cases")) {
-      (one.at("algorithm") == "unruly" ? outcome.unruly : outcome.other) = one;
+    for (const Json& result : results.at("cases")) {
+      (result.at("algorithm") == "unruly" ? outcome.unruly : outcome.other) = result;
     }
     return outcome;
   }
 
-  /// A deed that costs the case, and nothing else.
+  /// Expects that these parameters make the unruly case fail, and no other.
   void expectFailure(const std::vector<std::string>& parameters, const std::string& status,
                      const std::vector<std::string>& words, const Arguments& more = {}) const {
     SCOPED_TRACE(fmt::format("{}", parameters.front()));
@@ -138,7 +138,7 @@ TEST_F(Worker, CtrlCEndsAHangAtOnce) {
   const std::vector<pid_t> workers = program.children();
   EXPECT_THAT(workers, Not(IsEmpty()));
   program.signal(SIGINT);
-  const Ended ended = program.wait();
+  const ProgramResult ended = program.wait();
   EXPECT_EQ(ended.status, 130);
   EXPECT_THAT(ended.err, HasSubstr("interrupted"));
   for (const pid_t worker : workers) EXPECT_NE(::kill(worker, 0), 0) << "no process is left";
@@ -154,7 +154,7 @@ TEST_F(Worker, IsGoneWithTheProcessThatStartedIt) {
   program.wait();
   for (const FileDescriptor& worker : workers) {
     pollfd ended{worker.get(), POLLIN, 0};
-    EXPECT_EQ(::poll(&ended, 1, -1), 1);  // waits for its end
+    EXPECT_EQ(::poll(&ended, 1, -1), 1);  // wait for its end
   }
 }
 

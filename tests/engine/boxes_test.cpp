@@ -1,4 +1,4 @@
-// Boxes, pairs, pair buffers and boxes as arrays.
+// Boxes, pairs, pair buffers and structures of arrays.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Aabb, TouchingBoxesOverlapOnEveryAxis) {
       EXPECT_TRUE(overlaps(box, neighbour));
       EXPECT_TRUE(overlaps(neighbour, box));
 
-      // The smallest gap that floats can show.
+      // The smallest gap that a float can represent.
       float& near_bound = direction > 0 ? neighbour.min[axis] : neighbour.max[axis];
       near_bound = std::nextafter(near_bound, near_bound + direction);
       EXPECT_FALSE(overlaps(box, neighbour));
@@ -90,10 +90,10 @@ TEST(BoxArrays, TransposesAndPadsForEverySize) {
     ASSERT_EQ(arrays.size(), n);
     for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(arrays.box(i), boxes[i]);
 
-    const Aabb everything = {{-1e30F, -1e30F, -1e30F, 0}, {1e30F, 1e30F, 1e30F, 0}};
+    const Aabb huge = {{-1e30F, -1e30F, -1e30F, 0}, {1e30F, 1e30F, 1e30F, 0}};
     for (std::size_t i = n; i < n + BoxArrays::kPadding; ++i) {
-      EXPECT_FALSE(overlaps(arrays.box(i), everything));
-      EXPECT_FALSE(overlaps(everything, arrays.box(i)));
+      EXPECT_FALSE(overlaps(arrays.box(i), huge));
+      EXPECT_FALSE(overlaps(huge, arrays.box(i)));
       EXPECT_FALSE(overlaps(arrays.box(i), arrays.box(i)));
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -112,7 +112,7 @@ TEST(BoxArrays, KeepsItsRoomWhenShrunk) {
   EXPECT_EQ(arrays.min(0), room);
 }
 
-// A little more in every frame must not take new memory in every frame.
+// Slow growth must not allocate in every frame.
 TEST(BoxArrays, GrowsAgainByLargerSteps) {
   BoxArrays arrays;
   arrays.resize(1000);
@@ -130,7 +130,7 @@ TEST(OverlapCounts, CountsEachBodysPairs) {
   EXPECT_THAT(overlapCounts(0, runs), ElementsAre());
 }
 
-/// The least that a broad phase on the helper layers has to write.
+/// A minimal broad phase on the helper layers.
 class OnePairPerWorker final : public BoxBroadPhase {
  public:
   void findPairs() override {

@@ -1,4 +1,4 @@
-// What follows from the table of columns: docs/results.md and the file that Python reads. With
+// Files generated from the table of columns: docs/results.md and the file that Python reads. With
 // BROADMARK_UPDATE_GOLDEN=1 in the environment both are written instead of compared.
 
 #include "broadmark/results/case_columns.h"
@@ -30,7 +30,7 @@ constexpr NameTable kFormNames{{NamedValue{JsonForm::value, "value"},
                                 {JsonForm::count, "count"},
                                 {JsonForm::seconds, "seconds"},
                                 {JsonForm::per_frame, "per_frame"}}};
-/// As a sentence of the documentation.
+/// Formats as described in the documentation.
 constexpr NameTable kFormRules{{NamedValue{JsonForm::value, "`{}`"},
                                 {JsonForm::text, "`{}`, if it is a text"},
                                 {JsonForm::joined, "`{}`, as `NAME=VALUE;…`"},
@@ -41,7 +41,7 @@ constexpr NameTable kKnownRules{{NamedValue{Known::always, ""},
                                  {Known::timed, "; empty without a repetition"},
                                  {Known::checked, "; empty unless `checked`"}}};
 
-/// What Python and the report page need to know.
+/// A column for Python and the report page.
 Json toJson(const CaseColumn& column) {
   return {{"key", column.key},
           {"title", column.title},
@@ -82,11 +82,11 @@ std::string documentedTable() {
   return text;
 }
 
-/// Compares a file with what it ought to be, or writes it.
-void expectFile(const std::filesystem::path& file, const std::string& wanted) {
+/// Compares a file with its expected contents, or writes it.
+void expectFile(const std::filesystem::path& file, const std::string& expected) {
   const char* update = std::getenv("BROADMARK_UPDATE_GOLDEN");
-  if (update != nullptr && std::string(update) == "1") writeTextFile(file, wanted);
-  EXPECT_EQ(readTextFile(file), wanted) << "to write it: BROADMARK_UPDATE_GOLDEN=1";
+  if (update != nullptr && std::string(update) == "1") writeTextFile(file, expected);
+  EXPECT_EQ(readTextFile(file), expected) << "to write it: BROADMARK_UPDATE_GOLDEN=1";
 }
 
 TEST(CaseColumns, ArePythonsToo) {
@@ -109,10 +109,10 @@ TEST(CaseColumns, AreSaidOnce) {
     EXPECT_TRUE(keys.insert(column.key).second) << column.key;
     EXPECT_EQ(column.shown.csv, !column.json.path.empty()) << column.key;
   }
-  for (const auto place : {&ColumnShown::terminal, &ColumnShown::inspector, &ColumnShown::report}) {
-    std::set<int> places;
-    for (const CaseColumn* column : caseColumns(place)) {
-      EXPECT_TRUE(places.insert(column->shown.*place).second) << column->key;
+  for (const auto order : {&ColumnShown::terminal, &ColumnShown::inspector, &ColumnShown::report}) {
+    std::set<int> positions;
+    for (const CaseColumn* column : caseColumns(order)) {
+      EXPECT_TRUE(positions.insert(column->shown.*order).second) << column->key;
     }
   }
 }

@@ -1,4 +1,4 @@
-// One case, frame by frame: clock, limits, verdict, exclusivity.
+// A case, frame by frame: times, limits, verdict, exclusivity.
 
 #include "broadmark/harness/case_run.h"
 
@@ -24,7 +24,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
-// Bodies two apart in the chain have a gap of 1.
+// In the chain, bodies i and i + 2 have a gap of 1.
 TEST(CaseRun, AConservativeAnswerIsCheckedAgainstItsMargin) {
   for (const CheckMode check : {CheckMode::full, CheckMode::hash}) {
     const auto spoil = [](std::uint32_t, std::vector<Pair>& answer) { answer.push_back({0, 2}); };
@@ -42,9 +42,9 @@ TEST(CaseRun, AConservativeAnswerIsCheckedAgainstItsMargin) {
 }
 
 TEST(CaseRun, AConservativeAnswerMayMissNothing) {
-  const Case run =
+  const Case test_case =
       caseOf({.on_answer = [](std::uint32_t, auto& answer) { answer.pop_back(); }, .margin = 1000});
-  EXPECT_EQ(runOnChain(run, {.check = CheckMode::hash}).status, Status::mismatch);
+  EXPECT_EQ(runOnChain(test_case, {.check = CheckMode::hash}).status, Status::mismatch);
 }
 
 TEST(CaseRun, WhatItThrowsBecomesTheStatus) {
@@ -71,20 +71,20 @@ TEST(CaseRun, WhatCannotRunHereIsUnsupported) {
 TEST(CaseRun, AnInstructionSetThatIsMissingIsUnsupported) {
   Case vectorised = caseOf();
   vectorised.isa = isaSupported(Isa::neon) ? Isa::avx512 : Isa::neon;  // no processor has both
-  EXPECT_EQ(runOnChain(vectorised).status, Status::ok) << "heeds no instruction set";
+  EXPECT_EQ(runOnChain(vectorised).status, Status::ok) << "has no SIMD kernels";
   vectorised.algorithm.traits.vectorised = true;
   EXPECT_EQ(runOnChain(vectorised).status, Status::unsupported);
 }
 
 TEST(CaseRun, BadInputIsNoResult) {
-  Case run = caseOf();
-  run.parameters = {{"cells", "10"}};
-  EXPECT_THAT(inputErrorOf([&] { runOnChain(run); }), HasSubstr("cells"));
-  run.parameters = {{"cell", "1"}};
-  EXPECT_THAT(inputErrorOf([&] { runOnChain(run); }), HasSubstr("did you mean 'cells'"));
+  Case test_case = caseOf();
+  test_case.parameters = {{"cells", "10"}};
+  EXPECT_THAT(inputErrorOf([&] { runOnChain(test_case); }), HasSubstr("cells"));
+  test_case.parameters = {{"cell", "1"}};
+  EXPECT_THAT(inputErrorOf([&] { runOnChain(test_case); }), HasSubstr("did you mean 'cells'"));
 }
 
-/// A case whose passes take these times.
+/// A case with given times of its passes.
 class TimedRun {
  public:
   TimedRun(HostOfTimes::Times times, const RunPolicy& policy)
@@ -123,7 +123,7 @@ TEST(CaseRun, TheTimeLimitIsJudgedAfterThreeFramesAndKeepsThem) {
   EXPECT_EQ(result.pairs_mean, 3);
 }
 
-// A slow first frame alone is forgiven when the mean is within the limit.
+// A slow first frame is accepted while the mean is within the limit.
 TEST(CaseRun, TheTimeLimitIsOnTheRunningMean) {
   const auto slow_start = [](std::uint32_t frame) { return totalOf(frame == 1 ? 0.02 : 0); };
   const auto with_limit = [&](double seconds) {
@@ -144,7 +144,7 @@ TEST(CaseRun, InitialisationHasItsOwnLimit) {
   EXPECT_EQ(patient.repetitions.at(0).initialize_ns, 20'000'000);
 }
 
-// Whatever else the machine does, what happens within a call takes no longer than the call.
+// Under any load of the machine, work within a call takes no longer than the call.
 TEST(CaseRun, PhasesAreWithinTheTotalAndHoldWhatTheyCall) {
   FrameTimes within;
   const auto passes = [&within](Phase phase) {
@@ -152,13 +152,14 @@ TEST(CaseRun, PhasesAreWithinTheTotalAndHoldWhatTheyCall) {
     bruteForcePairs(inputs::uniform(100, 1, 1));
     within[phase] = std::chrono::nanoseconds(Clock::now() - begin).count();
   };
-  CaseRun run(caseOf({.on_update = [&](std::uint32_t) { passes(Phase::update_objects); },
-                      .on_answer = [&](std::uint32_t, auto&) { passes(Phase::search_overlaps); }}));
+  CaseRun case_run(
+      caseOf({.on_update = [&](std::uint32_t) { passes(Phase::update_objects); },
+              .on_answer = [&](std::uint32_t, auto&) { passes(Phase::search_overlaps); }}));
   ChainSource source;
-  ASSERT_TRUE(run.start(source.scene(), source.rewind()));
+  ASSERT_TRUE(case_run.start(source.scene(), source.rewind()));
   for (std::uint32_t index = 1; index <= kChainFrames; ++index) {
-    run.step(source.at(index));
-    const FrameTimes& times = run.times();
+    case_run.step(source.at(index));
+    const FrameTimes& times = case_run.times();
     std::int64_t sum = 0;
     for (const auto& [phase, name] : kPhases.entries) {
       EXPECT_GE(times[phase], within[phase]) << name;
@@ -171,98 +172,99 @@ TEST(CaseRun, PhasesAreWithinTheTotalAndHoldWhatTheyCall) {
 TEST(CaseRun, GoesOnAfterAMismatchAndKeepsTheFirstReason) {
   ChainSource source;
   Oracle oracle;
-  CaseRun run(caseOf({.on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }}));
-  ASSERT_TRUE(run.start(source.scene(), source.rewind()));
-  EXPECT_FALSE(run.answered());
+  CaseRun case_run(caseOf({.on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }}));
+  ASSERT_TRUE(case_run.start(source.scene(), source.rewind()));
+  EXPECT_FALSE(case_run.answered());
   for (std::uint32_t index = 1; index <= 2; ++index) {
     const Frame frame = source.at(index);
-    EXPECT_TRUE(run.step(frame));
-    EXPECT_TRUE(run.answered());
-    EXPECT_TRUE(run.check(frame, oracle)->isMismatch());
+    EXPECT_TRUE(case_run.step(frame));
+    EXPECT_TRUE(case_run.answered());
+    EXPECT_TRUE(case_run.check(frame, oracle)->isMismatch());
   }
-  EXPECT_EQ(run.status(), Status::mismatch);
-  EXPECT_THAT(run.reason(), HasSubstr("frame 1"));
+  EXPECT_EQ(case_run.status(), Status::mismatch);
+  EXPECT_THAT(case_run.reason(), HasSubstr("frame 1"));
 }
 
 TEST(CaseRun, SaysWhyAPassEndedAlsoAfterAMismatch) {
   ChainSource source;
   Oracle oracle;
-  CaseRun run(caseOf({.on_update =
-                          [](std::uint32_t frame) {
-                            if (frame == 2) throw std::runtime_error("out of cells");
-                          },
-                      .on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }}));
+  CaseRun case_run(caseOf({.on_update =
+                               [](std::uint32_t frame) {
+                                 if (frame == 2) throw std::runtime_error("out of cells");
+                               },
+                           .on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }}));
   for (int pass = 0; pass < 2; ++pass) {
-    run.start(source.scene(), source.rewind());
-    run.step(source.at(1));
-    run.check(source.at(1), oracle);
-    EXPECT_FALSE(run.step(source.at(2)));
+    case_run.start(source.scene(), source.rewind());
+    case_run.step(source.at(1));
+    case_run.check(source.at(1), oracle);
+    EXPECT_FALSE(case_run.step(source.at(2)));
   }
-  EXPECT_EQ(run.status(), Status::mismatch);
-  EXPECT_THAT(run.reason(), AllOf(HasSubstr("frame 1"), testing::EndsWith("out of cells")));
-  EXPECT_EQ(run.reason().find("out of cells"), run.reason().rfind("out of cells")) << "said once";
+  EXPECT_EQ(case_run.status(), Status::mismatch);
+  EXPECT_THAT(case_run.reason(), AllOf(HasSubstr("frame 1"), testing::EndsWith("out of cells")));
+  EXPECT_EQ(case_run.reason().find("out of cells"), case_run.reason().rfind("out of cells"))
+      << "said once";
 }
 
 TEST(CaseRun, APassBeyondTheLimitStillHasItsLastAnswer) {
   ChainSource source;
   Oracle oracle;
-  CaseRun run(caseOf(), {.frame_limit_seconds = 0});
-  run.start(source.scene(), source.rewind());
-  EXPECT_TRUE(run.step(source.at(1)));
-  EXPECT_TRUE(run.step(source.at(2)));
-  EXPECT_FALSE(run.step(source.at(3)));
-  EXPECT_EQ(run.status(), Status::timeout);
-  EXPECT_FALSE(run.running());
-  ASSERT_TRUE(run.answered());
-  EXPECT_FALSE(run.check(source.at(3), oracle)->isMismatch());
-  run.stop();
-  EXPECT_FALSE(run.answered());
+  CaseRun case_run(caseOf(), {.frame_limit_seconds = 0});
+  case_run.start(source.scene(), source.rewind());
+  EXPECT_TRUE(case_run.step(source.at(1)));
+  EXPECT_TRUE(case_run.step(source.at(2)));
+  EXPECT_FALSE(case_run.step(source.at(3)));
+  EXPECT_EQ(case_run.status(), Status::timeout);
+  EXPECT_FALSE(case_run.running());
+  ASSERT_TRUE(case_run.answered());
+  EXPECT_FALSE(case_run.check(source.at(3), oracle)->isMismatch());
+  case_run.stop();
+  EXPECT_FALSE(case_run.answered());
 }
 
 TEST(CaseRun, APassThatFailedHasNoInstance) {
   ChainSource source;
-  CaseRun run(caseOf({.on_update = [](std::uint32_t) { throw std::runtime_error("no"); }}));
-  ASSERT_TRUE(run.start(source.scene(), source.rewind()));
-  EXPECT_FALSE(run.step(source.at(1)));
-  EXPECT_FALSE(run.hasInstance());
-  EXPECT_EQ(run.status(), Status::error);
+  CaseRun case_run(caseOf({.on_update = [](std::uint32_t) { throw std::runtime_error("no"); }}));
+  ASSERT_TRUE(case_run.start(source.scene(), source.rewind()));
+  EXPECT_FALSE(case_run.step(source.at(1)));
+  EXPECT_FALSE(case_run.hasInstance());
+  EXPECT_EQ(case_run.status(), Status::error);
 }
 
-/// Says which execution each of its instances was given.
-class ExecutionTeller final : public BoxBroadPhase {
+/// Records the execution context of each instance.
+class ContextWitness final : public BoxBroadPhase {
  public:
-  explicit ExecutionTeller(std::vector<const ExecutionContext*>& told) : told_(told) {}
+  explicit ContextWitness(std::vector<const ExecutionContext*>& contexts) : contexts_(contexts) {}
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
-    told_.push_back(&execution);
+    contexts_.push_back(&execution);
   }
 
  private:
   void findPairs() override {}
-  std::vector<const ExecutionContext*>& told_;
+  std::vector<const ExecutionContext*>& contexts_;
 };
 
 TEST(CaseRun, AllPassesShareOneExecution) {
-  std::vector<const ExecutionContext*> told;
-  Case run;
-  run.algorithm.create = [&] { return std::make_unique<ExecutionTeller>(told); };
-  CaseRun case_run(run);
+  std::vector<const ExecutionContext*> contexts;
+  Case test_case;
+  test_case.algorithm.create = [&] { return std::make_unique<ContextWitness>(contexts); };
+  CaseRun case_run(test_case);
   ChainSource source;
   ChainSource other(2, 3);
   case_run.start(source.scene(), source.rewind());
   case_run.start(source.scene(), source.rewind());
   case_run.start(other.scene(), other.rewind());
-  ASSERT_EQ(told.size(), 3U);
-  EXPECT_EQ(told[0], told[1]);
-  EXPECT_EQ(told[0], told[2]);
+  ASSERT_EQ(contexts.size(), 3U);
+  EXPECT_EQ(contexts[0], contexts[1]);
+  EXPECT_EQ(contexts[0], contexts[2]);
 }
 
 TEST(CaseRun, CallsIntoAnExclusiveAlgorithmNeverMeet) {
   std::atomic<int> inside = 0;
-  std::atomic<int> most = 0;
+  std::atomic<int> max = 0;
   const auto call = [&] {
-    most = std::max(most.load(), ++inside);
+    max = std::max(max.load(), ++inside);
     std::this_thread::yield();
     --inside;
   };
@@ -277,7 +279,7 @@ TEST(CaseRun, CallsIntoAnExclusiveAlgorithmNeverMeet) {
         [&] { EXPECT_EQ(runOnChain(caseOf(behaviour), {}, 3).status, Status::ok); });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(most, 1);
+  EXPECT_EQ(max, 1);
 }
 
 TEST(CaseRun, ExclusiveAlgorithmsTakeTurnsOnOneThread) {
@@ -296,15 +298,15 @@ TEST(CaseRun, ExclusiveAlgorithmsTakeTurnsOnOneThread) {
 
 TEST(CaseRun, WaitingForAnExclusiveUseIsNotTimed) {
   Behaviour behaviour;
-  behaviour.traits.exclusive = "a library that somebody else uses";
-  CaseRun run(caseOf(behaviour));
+  behaviour.traits.exclusive = "a library that is in use";
+  CaseRun case_run(caseOf(behaviour));
   ChainSource source;
-  run.start(source.scene(), source.rewind());
+  case_run.start(source.scene(), source.rewind());
   std::latch held(1);
   std::latch wanted(1);
   Clock::time_point released;
   std::thread other([&] {
-    const ExclusiveUse alone(behaviour.traits.exclusive);
+    const ExclusiveUse use(behaviour.traits.exclusive);
     held.count_down();
     wanted.wait();
     for (int turn = 0; turn < 1000; ++turn) std::this_thread::yield();
@@ -312,10 +314,10 @@ TEST(CaseRun, WaitingForAnExclusiveUseIsNotTimed) {
   });
   held.wait();
   wanted.count_down();
-  run.step(source.at(1));
+  case_run.step(source.at(1));
   const auto end = Clock::now();
   other.join();
-  EXPECT_LE(std::chrono::nanoseconds(run.times()[Phase::total]), end - released);
+  EXPECT_LE(std::chrono::nanoseconds(case_run.times()[Phase::total]), end - released);
 }
 
 TEST(ExclusiveUse, KeepsReadersOutAndReadersShare) {
@@ -325,7 +327,7 @@ TEST(ExclusiveUse, KeepsReadersOutAndReadersShare) {
   for (int i = 0; i < 2; ++i) {
     threads.emplace_back([&] {
       for (int turn = 0; turn < 500; ++turn) {
-        const ExclusiveUse alone(kState);
+        const ExclusiveUse writing(kState);
         ++value;
         ++value;
       }
@@ -340,7 +342,7 @@ TEST(ExclusiveUse, KeepsReadersOutAndReadersShare) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(value, 2000);
   const SharedUse first(kState);
-  std::thread([&] { const SharedUse second(kState); }).join();  // never ends unless they share
+  std::thread([&] { const SharedUse second(kState); }).join();  // blocks unless both share
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Which pairs are wanted.
+// Collision filters.
 
 #include "broadmark/collision_filter.h"
 

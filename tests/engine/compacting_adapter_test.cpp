@@ -1,4 +1,4 @@
-// What an algorithm that knows only boxes gets to see of a world that changes: as little as can be.
+// The bodies of a changing world that an algorithm without presence or filters gets: the minimum.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using Boxes = std::vector<Aabb>;
 
-/// Reports all pairs, and keeps what it was shown.
+/// Reports all pairs, and stores its boxes.
 class Witness final : public BoxBroadPhase {
  public:
   using BoxBroadPhase::boxes;
@@ -36,10 +36,10 @@ class Witness final : public BoxBroadPhase {
   std::size_t formed_ = 0;
 };
 
-/// A witness in a world of its own.
-class Watched {
+/// A witness behind the adapter.
+class AdaptedWorld {
  public:
-  Watched(const CollisionFilter& filter, const Boxes& first, const Aabb& bounds)
+  AdaptedWorld(const CollisionFilter& filter, const Boxes& first, const Aabb& bounds)
       : boxes_(first), filter_(filter) {
     auto witness = std::make_unique<Witness>();
     witness_ = witness.get();
@@ -52,7 +52,7 @@ class Watched {
     world_->initialize(scene, {0, boxes_, std::span<const std::uint32_t>()}, execution_);
   }
 
-  /// Runs a frame and checks the answer.
+  /// Processes a frame and checks the answer.
   void step(const Boxes& boxes) {
     std::vector<std::uint32_t> changed;
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
@@ -64,8 +64,8 @@ class Watched {
     world_->updateStructures();
     world_->searchOverlaps();
     std::vector<Pair> answer;
-    for (const PairRun run : world_->overlaps()) {
-      answer.insert(answer.end(), run.begin(), run.end());
+    for (const PairRun pair_run : world_->overlaps()) {
+      answer.insert(answer.end(), pair_run.begin(), pair_run.end());
     }
     std::ranges::sort(answer);
     EXPECT_EQ(answer, bruteForcePairs(boxes_, filter_)) << "in frame " << index_;
@@ -88,54 +88,54 @@ constexpr Aabb kBounds = {{0, 0, 0, 0}, {100, 100, 100, 0}};
 
 Aabb unitAt(float x, float y = 0, float z = 0) { return inputs::boxAt({x, y, z}, {1, 1, 1}); }
 
-CollisionFilter layers(const std::vector<std::uint8_t>& of_bodies, const LayerMatrix& matrix) {
+CollisionFilter layers(const std::vector<std::uint8_t>& body_layers, const LayerMatrix& matrix) {
   std::vector<BodyGroups> groups;
-  for (const std::uint8_t layer : of_bodies) groups.push_back({.layer = layer});
+  for (const std::uint8_t layer : body_layers) groups.push_back({.layer = layer});
   return {groups, matrix};
 }
 
 TEST(CompactingAdapter, ShowsNobodyWhoCanMeetNobody) {
-  // Layer 2 meets layer 1, and layer 0 itself only.
+  // Layer 2 collides with layer 1, layer 0 with itself only.
   const CollisionFilter filter = layers({0, 0, 1, 2, 2}, LayerMatrix().set(0, 0).set(1, 2));
   Boxes boxes(5, unitAt(0));
   boxes[2] = kEmptyBox;
-  Watched watched(filter, boxes, kBounds);
-  watched.step(boxes);
-  EXPECT_EQ(watched.shown().size(), 2U);
+  AdaptedWorld adapted(filter, boxes, kBounds);
+  adapted.step(boxes);
+  EXPECT_EQ(adapted.shown().size(), 2U);
   boxes[2] = unitAt(0.5F);
-  watched.step(boxes);
-  EXPECT_EQ(watched.shown().size(), 5U);
+  adapted.step(boxes);
+  EXPECT_EQ(adapted.shown().size(), 5U);
   boxes[3] = boxes[4] = kEmptyBox;
-  watched.step(boxes);
-  EXPECT_EQ(watched.shown().size(), 2U);
+  adapted.step(boxes);
+  EXPECT_EQ(adapted.shown().size(), 2U);
   boxes[0] = kEmptyBox;
-  watched.step(boxes);
-  EXPECT_EQ(watched.shown().size(), 1U);
+  adapted.step(boxes);
+  EXPECT_EQ(adapted.shown().size(), 1U);
 }
 
 TEST(CompactingAdapter, ShowsOfALevelOnlyWhatIsNearSomebody) {
   constexpr std::size_t kLevel = 1000;
-  std::vector<std::uint8_t> of_bodies(kLevel + 1, 0);
-  of_bodies.back() = 1;
+  std::vector<std::uint8_t> body_layers(kLevel + 1, 0);
+  body_layers.back() = 1;
   Boxes boxes;
   for (std::size_t i = 0; i < kLevel; ++i) {
     boxes.push_back(unitAt(static_cast<float>(i % 10) * 10, static_cast<float>(i / 10 % 10) * 10,
                            static_cast<float>(i / 100) * 10));
   }
   boxes.push_back(unitAt(0.5F, 0.5F, 0.5F));
-  Watched watched(layers(of_bodies, LayerMatrix().set(0, 1)), boxes, kBounds);
+  AdaptedWorld adapted(layers(body_layers, LayerMatrix().set(0, 1)), boxes, kBounds);
   for (int step = 0; step < 20; ++step) {
     boxes.back() = unitAt(static_cast<float>(step) * 10 + 0.5F, 50, 90.5F);
-    watched.step(boxes);
-    EXPECT_LE(watched.shown().size(), 3U);
+    adapted.step(boxes);
+    EXPECT_LE(adapted.shown().size(), 3U);
   }
-  // Beyond the world, where its last one has gone.
+  // Outside of the world.
   boxes.back() = boxes.front() = unitAt(-1e6F, 1e9F, 500);
-  watched.step(boxes);
-  EXPECT_EQ(watched.pairsFormed(), 1U);
+  adapted.step(boxes);
+  EXPECT_EQ(adapted.pairsFormed(), 1U);
   boxes.back() = kEmptyBox;
-  watched.step(boxes);
-  EXPECT_TRUE(watched.shown().empty());
+  adapted.step(boxes);
+  EXPECT_TRUE(adapted.shown().empty());
 }
 
 TEST(CompactingAdapter, FormsNoPairsOfTwoWorlds) {
@@ -149,15 +149,15 @@ TEST(CompactingAdapter, FormsNoPairsOfTwoWorlds) {
       return inputs::boxAt(random.inCube(2), {1, 1, 1});
     });
   };
-  Watched watched(filter, boxes(0), {{0, 0, 0, 0}, {3, 3, 3, 0}});
+  AdaptedWorld adapted(filter, boxes(0), {{0, 0, 0, 0}, {3, 3, 3, 0}});
   for (std::uint32_t frame = 1; frame < 5; ++frame) {
-    watched.step(boxes(frame));
-    EXPECT_EQ(watched.shown().size(), kAll);
-    EXPECT_LE(watched.pairsFormed(), kAll * (kEach - 1) / 2);
+    adapted.step(boxes(frame));
+    EXPECT_EQ(adapted.shown().size(), kAll);
+    EXPECT_LE(adapted.pairsFormed(), kAll * (kEach - 1) / 2);
   }
 }
 
-// Where adding an offset rounds, boxes come to touch that do not.
+// An offset could round, and make separate boxes touch.
 TEST(CompactingAdapter, JudgesBoxesWhereTheyAre) {
   const CollisionFilter filter(
       {{BodyGroups{}, BodyGroups{}, BodyGroups{.world = 1}, BodyGroups{.world = 1}}},
@@ -165,12 +165,12 @@ TEST(CompactingAdapter, JudgesBoxesWhereTheyAre) {
   const float gap = 1 + 0x1p-23F;  // the next number
   const Boxes boxes = {unitAt(0), inputs::boxAt({gap, 0, 0}, {1, 1, 1}), unitAt(0),
                        inputs::boxAt({gap, 0, 0}, {1, 1, 1})};
-  Watched watched(filter, boxes, {{0, 0, 0, 0}, {1e6F, 1e6F, 1e6F, 0}});
-  watched.step(boxes);
-  EXPECT_EQ(watched.pairsFormed(), 1U);
+  AdaptedWorld adapted(filter, boxes, {{0, 0, 0, 0}, {1e6F, 1e6F, 1e6F, 0}});
+  adapted.step(boxes);
+  EXPECT_EQ(adapted.pairsFormed(), 1U);
 }
 
-// As large as floats: the worlds stay where they are.
+// The worlds span the range of floats: they get no offsets.
 TEST(CompactingAdapter, LeavesHugeWorldsAtTheirPlace) {
   constexpr std::uint32_t kAll = 60;
   const CollisionFilter filter =
@@ -179,20 +179,19 @@ TEST(CompactingAdapter, LeavesHugeWorldsAtTheirPlace) {
   const Boxes boxes = inputs::limits(kAll, 0, 1);
   Aabb bounds = boxes[0];
   for (const Aabb& box : boxes) bounds = merged(bounds, box);
-  Watched watched(filter, boxes, bounds);
-  watched.step(inputs::limits(kAll, 1, 1));
-  EXPECT_EQ(watched.shown(), inputs::limits(kAll, 1, 1));
+  AdaptedWorld adapted(filter, boxes, bounds);
+  adapted.step(inputs::limits(kAll, 1, 1));
+  EXPECT_EQ(adapted.shown(), inputs::limits(kAll, 1, 1));
 }
 
-// Boxes of all inputs in worlds of all kinds, too small and degenerate ones among them.
+// Boxes of all inputs in worlds of all kinds, including too small and degenerate worlds.
 TEST(OccupancyBitmap, KnowsEveryOverlap) {
-  const Aabb nothing = kEmptyBox;
   for (const inputs::Input& input : inputs::kAll) {
     SCOPED_TRACE(input.name);
     const Boxes boxes = input.boxes(80, 1, 3);
-    Aabb all = boxes[0];
-    for (const Aabb& box : boxes) all = merged(all, box);
-    for (const Aabb& world : {all, kBounds, boxes[0], nothing, Aabb{}}) {
+    Aabb bounds = boxes[0];
+    for (const Aabb& box : boxes) bounds = merged(bounds, box);
+    for (const Aabb& world : {bounds, kBounds, boxes[0], kEmptyBox, Aabb{}}) {
       OccupancyBitmap grid(world);
       for (const Aabb& marked : boxes) {
         grid.clear();

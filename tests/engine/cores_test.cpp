@@ -1,4 +1,4 @@
-// The cores: what made-up systems tell of them, and which are chosen.
+// Processor cores: their state in simulated systems, and the choice of cores.
 
 #include "broadmark/cores.h"
 
@@ -68,18 +68,18 @@ TEST(Cores, HalvesOfOneAreChosenLast) {
   const CoreSiblings halves = {{0, {1}}, {1, {0}}, {2, {3}}, {3, {2}}};
   EXPECT_THAT(quietestCores(2, usable, {}, halves), ElementsAre(0, 2));
   EXPECT_THAT(quietestCores(3, usable, {}, halves), ElementsAre(0, 2, 1));
-  // A busy core slows the one beside it.
+  // A busy core slows its sibling.
   EXPECT_THAT(quietestCores(1, usable, {{0, 1.0}}, halves), ElementsAre(2));
 }
 
-/// Where each of a team's workers may run.
+/// The usable cores of each worker in a team.
 std::vector<std::vector<int>> usableByWorker(ThreadTeam& team) {
   std::vector<std::vector<int>> usable(static_cast<std::size_t>(team.size()));
   team.run([&](int worker) { usable[static_cast<std::size_t>(worker)] = usableCores(); });
   return usable;
 }
 
-/// Runs `test` on a thread of its own, as what it pins stays so.
+/// Runs `test` on a separate thread, as pinning is permanent.
 template <class Test>
 void onAnotherThread(Test&& test) {
   std::thread(test).join();
@@ -110,7 +110,7 @@ TEST(Pinning, OfCoresThatDoNotExistLeavesAllFree) {
   });
 }
 
-// Wherever that is, also once it has gone to another one; as long as the cores are enough.
+// On any core of the caller, also after it has migrated; if there are enough cores.
 TEST(ThreadTeam, KeepsItsWorkersOffTheCallersCore) {
   onAnotherThread([] {
     const std::vector<int> usable = usableCores();
@@ -139,9 +139,9 @@ TEST(Pinning, OfACaseWhoseThreadsFitTheCores) {
   const auto pinned = [&](int threads, bool pin, bool on_device) {
     bool is_pinned = false;
     onAnotherThread([&] {
-      Case run = caseOf({.traits = {.on_device = on_device}});
-      run.threads = threads;
-      InProcessExecutor host(run, pin);
+      Case test_case = caseOf({.traits = {.on_device = on_device}});
+      test_case.threads = threads;
+      InProcessExecutor host(test_case, pin);
       host.start(source.scene(), first);
       is_pinned = host.report().pinned;
       if (!is_pinned) {

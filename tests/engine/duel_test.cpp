@@ -1,4 +1,4 @@
-// Duels: their statistics on machines that are made up, with all the noise that real ones have.
+// Duels: their statistics on simulated machines with realistic noise.
 
 #include "broadmark/analysis/duel.h"
 #include "broadmark/analysis/run_ratio.h"
@@ -19,7 +19,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// An algorithm that takes so long on that machine, and does nothing.
+/// A host that does nothing in the given time on a simulated machine.
 class TimedHost final : public CaseExecutor {
  public:
   TimedHost(std::shared_ptr<UnevenMachine> machine, double seconds)
@@ -27,9 +27,10 @@ class TimedHost final : public CaseExecutor {
 
   std::int64_t start(const SceneInfo&, const Frame&) override { return 0; }
   StepResult step(const Frame&) override {
-    StepResult run;
-    run.times[Phase::total] = static_cast<std::int64_t>(machine_->time(seconds_, own_noise_) * 1e9);
-    return run;
+    StepResult result;
+    result.times[Phase::total] =
+        static_cast<std::int64_t>(machine_->time(seconds_, own_noise_) * 1e9);
+    return result;
   }
   void stop() override {}
   PairDigest digest() override { return {}; }
@@ -46,14 +47,14 @@ class TimedHost final : public CaseExecutor {
   double own_noise_ = 0;
 };
 
-/// A duel of algorithms that take so long.
+/// A duel of algorithms with these times.
 DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, double precision) {
   const auto machine = std::make_shared<UnevenMachine>(seed);
   std::vector<DuelSide> sides;
-  for (const double each : seconds) {
+  for (const double time : seconds) {
     sides.push_back(
-        {std::to_string(each), caseOf(), [machine, each](const Case&, const CancelQuery&) {
-           return std::make_unique<TimedHost>(machine, each);
+        {std::to_string(time), caseOf(), [machine, time](const Case&, const CancelQuery&) {
+           return std::make_unique<TimedHost>(machine, time);
          }});
   }
   ChainSource frames(4, 50);
@@ -62,7 +63,7 @@ DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, double prec
 
 TEST(Verdict, IsSameOnlyWithinTheMargin) {
   EXPECT_EQ(verdictOn({0.995, 1.005}, 0.01), Verdict::same);
-  EXPECT_EQ(verdictOn({1.002, 1.008}, 0.01), Verdict::same) << "less than anybody asks for";
+  EXPECT_EQ(verdictOn({1.002, 1.008}, 0.01), Verdict::same) << "within the margin";
   EXPECT_EQ(verdictOn({1.002, 1.02}, 0.01), Verdict::slower);
   EXPECT_EQ(verdictOn({0.9, 0.99}, 0.01), Verdict::faster);
   EXPECT_EQ(verdictOn({0.42, 5.9}, 0.01), Verdict::undecided);
@@ -119,12 +120,12 @@ TEST(Duel, FindsADifferenceOfTenPercent) {
 }
 
 TEST(Duel, RanksWithTies) {
-  const std::vector<DuelPlace> places = duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, 0.03).places;
+  const std::vector<DuelRank> ranking = duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, 0.03).ranking;
   std::vector<std::size_t> numbers;
-  for (const DuelPlace& place : places) numbers.push_back(place.place);
+  for (const DuelRank& rank : ranking) numbers.push_back(rank.rank);
   EXPECT_THAT(numbers, ElementsAre(1, 2, 2, 4));
-  EXPECT_EQ(places.front().side, 1U);
-  EXPECT_EQ(places.back().side, 3U);
+  EXPECT_EQ(ranking.front().side, 1U);
+  EXPECT_EQ(ranking.back().side, 3U);
 }
 
 TEST(Duel, EndsAtOnceWhenASideIsWrong) {

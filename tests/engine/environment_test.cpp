@@ -1,4 +1,4 @@
-// What is said of the machine.
+// The description of the machine.
 
 #include "broadmark/harness/environment.h"
 
@@ -22,7 +22,7 @@ TEST(Environment, IsPlausible) {
   EXPECT_NE(environment.cpu, "");
   EXPECT_GE(environment.logical_cores, 1);
   EXPECT_LE(environment.logical_cores, 4096);
-  EXPECT_GE(environment.physical_cores, 0);  // 0 where the system does not tell
+  EXPECT_GE(environment.physical_cores, 0);  // 0: unknown
   EXPECT_EQ(environment.isa, isaName(bestIsa()));
   EXPECT_GE(environment.memory_bytes, std::uint64_t{1} << 28);
   EXPECT_LE(environment.memory_bytes, std::uint64_t{1} << 50);

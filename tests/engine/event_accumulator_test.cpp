@@ -1,4 +1,4 @@
-// What events lead to, and which of them cannot be.
+// The pairs that follow from events, and impossible events.
 
 #include "broadmark/harness/event_accumulator.h"
 
@@ -15,21 +15,21 @@ class Followed : public testing::Test {
 
   /// The events of a frame, in two runs each.
   void apply(const std::vector<Pair>& began, const std::vector<Pair>& ended) {
-    followed_.apply({inTwo(began, began_), inTwo(ended, ended_)}, kBodies);
+    accumulator_.apply({split(began, began_), split(ended, ended_)}, kBodies);
   }
   [[nodiscard]] std::vector<Pair> pairs() const {
-    const PairRun run = followed_.pairs().front();
-    return {run.begin(), run.end()};
+    const PairRun pair_run = accumulator_.pairs().front();
+    return {pair_run.begin(), pair_run.end()};
   }
   [[nodiscard]] std::vector<Pair> impossible() const {
-    return {followed_.impossible().begin(), followed_.impossible().end()};
+    return {accumulator_.impossible().begin(), accumulator_.impossible().end()};
   }
 
   using Pairs = std::vector<Pair>;
-  EventAccumulator followed_;
+  EventAccumulator accumulator_;
 
  private:
-  static PairRuns inTwo(const std::vector<Pair>& pairs, std::vector<PairRun>& runs) {
+  static PairRuns split(const std::vector<Pair>& pairs, std::vector<PairRun>& runs) {
     const std::size_t half = pairs.size() / 2;
     runs = {PairRun(pairs).first(half), PairRun(pairs).subspan(half)};
     return runs;
@@ -50,7 +50,7 @@ TEST_F(Followed, PairsBeginAndEnd) {
   EXPECT_EQ(pairs(), Pairs());
   EXPECT_EQ(impossible(), Pairs());
   apply({{0, 1}}, {});
-  followed_.clear();
+  accumulator_.clear();
   EXPECT_EQ(pairs(), Pairs());
 }
 

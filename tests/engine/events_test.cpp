@@ -1,4 +1,4 @@
-// Events that are made of pairs, and wrong ones, which no check lets pass.
+// Events derived from pairs, and wrong events, which all checks detect.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,15 +25,15 @@ constexpr std::uint32_t kWanderers = 40;
 
 std::vector<Pair> sortedPairs(PairRuns runs) {
   Pairs pairs;
-  for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+  for (const PairRun pair_run : runs) pairs.insert(pairs.end(), pair_run.begin(), pair_run.end());
   std::ranges::sort(pairs);
   return pairs;
 }
 
-/// Answers what it is told to, in runs of several lengths.
-class Told final : public BroadPhase {
+/// Reports a given answer, in runs of several lengths.
+class FixedAnswer final : public BroadPhase {
  public:
-  explicit Told(const Pairs& answer) : answer_(answer) {}
+  explicit FixedAnswer(const Pairs& answer) : answer_(answer) {}
 
   void initialize(const SceneInfo&, const Frame&, ExecutionContext&) override {}
   void updateObjects(const Frame&) override {}
@@ -51,13 +51,13 @@ class Told final : public BroadPhase {
   std::vector<PairRun> runs_;
 };
 
-/// Events of answers, frame by frame.
-class FromPairs {
+/// Events of successive answers.
+class EventStream {
  public:
-  FromPairs(int threads, Pairs first)
+  EventStream(int threads, Pairs first)
       : answer_(std::move(first)),
         execution_(threads, Isa::scalar),
-        events_(withEvents(std::make_unique<Told>(answer_))) {
+        events_(withEvents(std::make_unique<FixedAnswer>(answer_))) {
     events_->initialize({.objects = kWanderers}, {0, boxes_, std::span<const std::uint32_t>()},
                         execution_);
   }
@@ -81,9 +81,9 @@ class FromPairs {
   std::unique_ptr<BroadPhase> events_;
 };
 
-Pairs without(const std::set<Pair>& some, const std::set<Pair>& others) {
+Pairs without(const std::set<Pair>& pairs, const std::set<Pair>& others) {
   Pairs rest;
-  std::ranges::set_difference(some, others, std::back_inserter(rest));
+  std::ranges::set_difference(pairs, others, std::back_inserter(rest));
   return rest;
 }
 
@@ -91,11 +91,11 @@ TEST(EventsFromPairs, AreTheDifferencesOfSetsWhateverTheTeam) {
   for (const int threads : {1, 2, 3, 7}) {
     inputs::Random random(1, 1);
     std::set<Pair> before;
-    FromPairs events(threads, {});
+    EventStream events(threads, {});
     for (int frame = 0; frame < 40; ++frame) {
       std::set<Pair> now;
-      const int most = frame % 5 == 0 ? 0 : 20 * frame;
-      for (int i = 0; i < most; ++i) {
+      const int max = frame % 5 == 0 ? 0 : 20 * frame;
+      for (int i = 0; i < max; ++i) {
         const auto a = static_cast<std::uint32_t>(random.integer(0, kWanderers - 2));
         const auto b = static_cast<std::uint32_t>(random.integer(0, kWanderers - 2));
         now.insert(orderedPair(a, b >= a ? b + 1 : b));
@@ -110,14 +110,14 @@ TEST(EventsFromPairs, AreTheDifferencesOfSetsWhateverTheTeam) {
 
 TEST(EventsFromPairs, ThoseOfTheInitialPoseAllBegin) {
   const Pairs first = {{0, 1}, {4, 9}};
-  FromPairs events(2, first);
+  EventStream events(2, first);
   EXPECT_EQ(events.events(), std::pair(first, Pairs()));
   EXPECT_EQ(events.eventsOf(first), std::pair(Pairs(), Pairs()));
 }
 
 TEST(EventsFromPairs, FaultsInTheAnswerAreEventsToo) {
   for (const int threads : {1, 3}) {
-    FromPairs events(threads, {{0, 1}});
+    EventStream events(threads, {{0, 1}});
     EXPECT_EQ(events.eventsOf({{0, 1}, {0, 1}}).first, (Pairs{{0, 1}})) << "begins twice";
     const Pairs none = {{1, 0}, {2, 2}, {3, kWanderers}, {0xFFFF'FFFF, 0xFFFF'FFFF}};
     EXPECT_EQ(events.eventsOf(none), std::pair(none, Pairs{{0, 1}, {0, 1}}));
@@ -125,16 +125,16 @@ TEST(EventsFromPairs, FaultsInTheAnswerAreEventsToo) {
   }
 }
 
-/// Makes events of what brute force finds; the events of one frame are spoilt.
+/// Events of brute force; the events of a single frame are spoilt.
 class SpoiltEvents final : public BroadPhase {
  public:
   using Spoil = std::function<void(Pairs& began, Pairs& ended)>;
   SpoiltEvents(Spoil spoil, float margin) : spoil_(std::move(spoil)), margin_(margin) {}
 
   [[nodiscard]] float margin() const override { return margin_; }
-  void reportEvents() override { told_ = true; }
+  void reportEvents() override { enabled_ = true; }
   void initialize(const SceneInfo&, const Frame& first, ExecutionContext&) override {
-    EXPECT_TRUE(told_);
+    EXPECT_TRUE(enabled_);
     findEvents(first);
   }
   void updateObjects(const Frame& frame) override {
@@ -144,7 +144,7 @@ class SpoiltEvents final : public BroadPhase {
   }
   void searchOverlaps() override {}
   [[nodiscard]] PairRuns overlaps() const override {
-    ADD_FAILURE() << "nobody wants all pairs";
+    ADD_FAILURE() << "all pairs were queried";
     return {};
   }
   [[nodiscard]] PairEvents events() const override {
@@ -164,14 +164,14 @@ class SpoiltEvents final : public BroadPhase {
 
   Spoil spoil_;
   float margin_;
-  bool told_ = false;
+  bool enabled_ = false;
   Pairs pairs_;
   Pairs began_;
   Pairs ended_;
   std::vector<PairRun> runs_;
 };
 
-/// Bodies that come together and part in every frame.
+/// Bodies with overlaps that begin and end in every frame.
 class Wandering final : public IndexedFrames {
  public:
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
@@ -187,14 +187,14 @@ class Wandering final : public IndexedFrames {
 };
 
 CaseResult resultOf(const SpoiltEvents::Spoil& spoil, CheckMode check, float margin = 0) {
-  Case run = caseOf({.traits = {.events = true}});
-  run.answer = AnswerKind::events;
-  run.algorithm.create = [=] { return std::make_unique<SpoiltEvents>(spoil, margin); };
+  Case test_case = caseOf({.traits = {.events = true}});
+  test_case.answer = AnswerKind::events;
+  test_case.algorithm.create = [=] { return std::make_unique<SpoiltEvents>(spoil, margin); };
   Wandering source;
-  return runCase(run, source, {.check = check});
+  return runCase(test_case, source, {.check = check});
 }
 
-/// In no frame do they overlap.
+/// Bodies that never overlap.
 constexpr Pair kFarApart = {0, 1};
 
 class WrongEvents : public testing::TestWithParam<CheckMode> {};
@@ -235,7 +235,7 @@ TEST_P(WrongEvents, AreMismatches) {
     const CaseResult result = resultOf(spoil, GetParam());
     EXPECT_EQ(result.status, Status::mismatch);
     EXPECT_THAT(result.reason, testing::StartsWith("frame 3: "));
-    // With a margin that allows every extra pair, too, unless that is all that it is.
+    // Also with a margin that allows every extra pair, unless the fault is only an extra pair.
     const bool only_extra = name == "one did not end";
     EXPECT_EQ(resultOf(spoil, GetParam(), 1000).status, only_extra ? Status::ok : Status::mismatch);
   }
@@ -254,10 +254,10 @@ TEST(WrongEvents, AWrongAnswerGivesWrongEvents) {
              [](Pairs& answer) {
                answer.push_back({2, 1});
              }}) {
-      Case run = spoilingAnswer(spoil);
-      EXPECT_EQ(runOnChain(run, {.check = check}).status, Status::mismatch);
-      run.answer = AnswerKind::events;
-      const CaseResult result = runOnChain(run, {.check = check});
+      Case test_case = spoilingAnswer(spoil);
+      EXPECT_EQ(runOnChain(test_case, {.check = check}).status, Status::mismatch);
+      test_case.answer = AnswerKind::events;
+      const CaseResult result = runOnChain(test_case, {.check = check});
       EXPECT_EQ(result.status, Status::mismatch);
       EXPECT_THAT(result.reason, testing::StartsWith("frame 3: "));
       EXPECT_EQ(result.answer, AnswerKind::events);
@@ -267,13 +267,13 @@ TEST(WrongEvents, AWrongAnswerGivesWrongEvents) {
 }
 
 TEST(WrongEvents, TheyCountAsPairsOfTheAnswer) {
-  Case run = caseOf();
-  run.answer = AnswerKind::events;
-  const CaseResult result = runOnChain(run);
+  Case test_case = caseOf();
+  test_case.answer = AnswerKind::events;
+  const CaseResult result = runOnChain(test_case);
   EXPECT_EQ(result.status, Status::ok);
   EXPECT_EQ(result.pairs_max, 0U) << "the chain moves as a whole";
-  run.answer = AnswerKind::pairs;
-  EXPECT_EQ(runOnChain(run).pairs_max, 3U);
+  test_case.answer = AnswerKind::pairs;
+  EXPECT_EQ(runOnChain(test_case).pairs_max, 3U);
 }
 
 }  // namespace

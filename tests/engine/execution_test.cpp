@@ -1,4 +1,4 @@
-// Shares of work, the team of threads, instruction sets.
+// Work sharing, thread teams, instruction sets.
 
 #include "broadmark/execution.h"
 
@@ -56,31 +56,31 @@ TEST(ThreadTeam, EveryWorkerRunsOnceInItsOwnThread) {
   }
 }
 
-// Workers write plain memory and the caller reads it: run() is what orders the two.
+// Workers write plain memory and the caller reads it: run() synchronises the two.
 TEST(ThreadTeam, ManyShortRunsLoseNothing) {
   for (const int size : {2, 3, 5}) {
     ThreadTeam team(size);
     std::vector<int> counts(static_cast<std::size_t>(size));
     int sum = 0;
     constexpr int kRuns = kSanitized ? 500 : 5000;
-    for (int run = 0; run < kRuns; ++run) {
+    for (int round = 0; round < kRuns; ++round) {
       team.run([&](int worker) { ++counts[static_cast<std::size_t>(worker)]; });
       sum = 0;
       for (const int count : counts) sum += count;
-      ASSERT_EQ(sum, (run + 1) * size);
+      ASSERT_EQ(sum, (round + 1) * size);
     }
   }
 }
 
-// Whether it is woken once, twice or never, and whether it has gone back to sleep by then.
+// After zero to two calls of wake(), also after workers have fallen asleep again.
 TEST(ThreadTeam, RunsOnceAWakeUp) {
   const std::vector<Aabb> boxes = inputs::uniform(2000, 1, 1);
   for (const int size : {1, 2, 3, 5}) {
     ThreadTeam team(size);
     constexpr int kRuns = kSanitized ? 100 : 1000;
-    for (int run = 0; run < kRuns; ++run) {
-      for (int time = 0; time < run % 3; ++time) team.wake();
-      if (run % 100 == 99) bruteForcePairs(boxes);  // takes longer than workers stay awake
+    for (int round = 0; round < kRuns; ++round) {
+      for (int i = 0; i < round % 3; ++i) team.wake();
+      if (round % 100 == 99) bruteForcePairs(boxes);  // takes longer than workers stay awake
       std::atomic<int> ran = 0;
       team.run([&](int) { ++ran; });
       ASSERT_EQ(ran, size);
@@ -114,7 +114,7 @@ TEST(ThreadTeam, MadeAndDestroyedUnused) {
   for (int i = 0; i < 50; ++i) const ThreadTeam team(1 + i % 8);
 }
 
-// A size that the system refuses is an error that can be reported, not the end of the program.
+// Too many threads for the system are a reportable error; they do not terminate the program.
 TEST(ThreadTeamDeathTest, TooManyThreadsThrow) {
   if (kSanitized) GTEST_SKIP() << "sanitizers reserve more memory than the limit set here";
   const auto start_many = [] {

@@ -1,4 +1,4 @@
-// Files that appear whole or not at all.
+// Files that are written atomically.
 
 #include "broadmark/files.h"
 
@@ -43,7 +43,7 @@ TEST(AtomicFile, ReplacesWhatIsThereAndWhatAKilledWriterLeft) {
 
 TEST(AtomicFile, RefusesWhatIsNoFile) {
   const TemporaryDirectory directory;
-  // Stands for /dev/null and the like, which a test had better not risk.
+  // Instead of /dev/null, which a test must not risk.
   const std::filesystem::path fifo = directory / "fifo";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   for (const std::filesystem::path& path : {directory / "", fifo}) {
@@ -62,8 +62,8 @@ TEST(AtomicFile, WritesThroughLinks) {
   EXPECT_EQ(readTextFile(directory / "target"), "new");
 }
 
-// A writer that opens the partial file of another just before that one finishes must not cut the
-// finished file.
+// A writer that opens another writer's partial file just before its commit must not truncate the
+// committed file.
 TEST(AtomicFile, ManyWritersLeaveAWholeFile) {
   const TemporaryDirectory directory;
   const std::filesystem::path path = directory / "a.txt";
@@ -77,7 +77,7 @@ TEST(AtomicFile, ManyWritersLeaveAWholeFile) {
         try {
           writeTextFile(path, text);
         } catch (const InputError& error) {
-          // Being refused is fine; losing one's file on the way is not.
+          // A refusal is correct; a loss of the file is not.
           if (std::string_view(error.what()).find("another process") == std::string_view::npos) {
             ++broken;
           }

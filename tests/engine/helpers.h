@@ -1,4 +1,4 @@
-// What several engine tests need: a directory to write in, the text of an error, small boxes.
+// Helpers of engine tests: temporary directories, messages of errors, small boxes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,14 +23,14 @@
 
 namespace broadmark::tests {
 
-/// Whether memory and time are not what they are in a plain build.
+/// Whether sanitizers change the use of memory and time.
 #ifdef BROADMARK_SANITIZED
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
 #endif
 
-/// A fresh directory that is removed with all it holds.
+/// A new directory; the destructor removes it with its contents.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -51,7 +51,7 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-/// The message of the InputError that `action` throws; a failure and "" when it throws none.
+/// The message of the InputError that `action` throws; a failure and "" if there is none.
 template <std::invocable Action>
 std::string inputErrorOf(Action&& action) {
   try {

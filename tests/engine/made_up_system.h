@@ -1,4 +1,4 @@
-// Folders as /proc and /sys are, with made-up contents.
+// Simulated folders /proc and /sys.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Results of several runs as one.
+// Merging the results of several runs.
 
 #include "broadmark/results/merge.h"
 
@@ -11,21 +11,21 @@ namespace {
 using testing::ElementsAre;
 using testing::SizeIs;
 
-CaseResult resultOf(const std::string& id, int repetitions, int asked) {
+CaseResult resultOf(const std::string& id, int repetitions, int requested) {
   CaseResult result;
   result.id = id;
   result.recording.hash = "hash";
-  result.conditions.repetitions = asked;
+  result.conditions.repetitions = requested;
   result.repetitions.resize(static_cast<std::size_t>(repetitions));
   return result;
 }
 
 Results runOf(const std::string& cpu, const std::string& started, std::vector<CaseResult> cases) {
-  Results run;
-  run.environments = {{.cpu = cpu, .started = started}};
-  run.cases = std::move(cases);
-  run.complete = true;
-  return run;
+  Results results;
+  results.environments = {{.cpu = cpu, .started = started}};
+  results.cases = std::move(cases);
+  results.complete = true;
+  return results;
 }
 
 std::vector<std::string> idsOf(const Results& results) {

@@ -1,4 +1,4 @@
-// Names that people type.
+// Names that users enter.
 
 #include "broadmark/names.h"
 

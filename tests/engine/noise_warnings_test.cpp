@@ -1,4 +1,4 @@
-// What is said of a machine that is not quiet, with made-up machines.
+// Warnings about noisy machines, with simulated machines.
 
 #include "broadmark/harness/noise_warnings.h"
 
@@ -19,18 +19,18 @@ using testing::IsEmpty;
 class NoiseWarnings : public testing::Test {
  protected:
   [[nodiscard]] std::vector<std::string> warnings() const {
-    return noiseWarnings(environment_, machine_, run_);
+    return noiseWarnings(environment_, machine_, test_case_);
   }
 
   Environment environment_{.governor = "performance", .build_type = "Release"};
   MachineState machine_{.usable_cores = {0, 1, 2, 3}};
-  Case run_ = caseOf();
+  Case test_case_ = caseOf();
 };
 
 TEST_F(NoiseWarnings, OfAQuietMachineNothingIsSaid) {
   machine_.busy = {{0, 0.0}, {1, 0.1}, {2, 0.0}, {3, 0.1}};
   machine_.siblings = {{0, {1}}, {1, {0}}};
-  run_.threads = 4;
+  test_case_.threads = 4;
   EXPECT_THAT(warnings(), IsEmpty());
 }
 
@@ -53,7 +53,7 @@ TEST_F(NoiseWarnings, ABusyCoreBesideOneThatWeUse) {
   machine_.busy = {{8, 1.0}};
   machine_.siblings = {{1, {8}}, {8, {1}}};
   EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("core 8"), HasSubstr("sibling of core 1"))));
-  run_.threads = 4;  // it uses all of them anyway
+  test_case_.threads = 4;  // uses all cores
   EXPECT_THAT(warnings(), IsEmpty());
 }
 
@@ -64,14 +64,14 @@ TEST_F(NoiseWarnings, FrequenciesThatChange) {
 }
 
 TEST_F(NoiseWarnings, MoreThreadsThanCores) {
-  run_.threads = 5;
-  EXPECT_THAT(warnings(), ElementsAre(HasSubstr("5 threads take turns on 4 cores")));
+  test_case_.threads = 5;
+  EXPECT_THAT(warnings(), ElementsAre(HasSubstr("5 threads share 4 cores")));
 }
 
 TEST_F(NoiseWarnings, BuildsWithoutOptimisation) {
   environment_.build_type = "Debug";
-  run_.algorithm.plugin = "mine.so";
-  run_.algorithm.plugin_build.unoptimised = true;
+  test_case_.algorithm.plugin = "mine.so";
+  test_case_.algorithm.plugin_build.unoptimised = true;
   EXPECT_THAT(warnings(),
               ElementsAre(HasSubstr("Debug"), AllOf(HasSubstr("mine.so"), HasSubstr("Release"))));
 }

@@ -1,4 +1,4 @@
-// The oracle against the definition, and how answers are compared with it.
+// The oracle against the definition, and comparison of answers with it.
 
 #include "broadmark/harness/oracle.h"
 
@@ -19,14 +19,14 @@ using testing::ElementsAre;
 using testing::ElementsAreArray;
 
 PairDigest digestOf(std::vector<Pair> pairs) {
-  const PairRun run = pairs;
-  return digest({&run, 1});
+  const PairRun span = pairs;
+  return digest({&span, 1});
 }
 
 FrameDifference compare(const std::vector<Pair>& answer, const std::vector<Aabb>& boxes,
                         float margin = 0) {
-  const PairRun run = answer;
-  return findDifference({&run, 1}, bruteForcePairs(boxes), {.index = 7, .boxes = boxes}, margin);
+  const PairRun span = answer;
+  return findDifference({&span, 1}, bruteForcePairs(boxes), {.index = 7, .boxes = boxes}, margin);
 }
 
 TEST(BruteForce, FindsTheObviousPairs) {
@@ -64,7 +64,7 @@ TEST(Sweep, FindsNoMorePairsThanAskedFor) {
   EXPECT_EQ(sweptPairs(boxes, {}, kPairs).size(), kPairs);
   EXPECT_THROW(sweptPairs(boxes, {}, kPairs - 1), InputError);
   Oracle oracle(std::size_t{1} << 30, kPairs - 1);
-  for (int time = 0; time < 2; ++time) {  // nothing half found is kept
+  for (int pass = 0; pass < 2; ++pass) {  // an incomplete answer is not cached
     EXPECT_THROW(oracle.pairDigest(boxes), InputError);
   }
   EXPECT_EQ(oracle.pairs(inputs::identical(399, 0, 1)).size(), 399 * 398 / 2);
@@ -106,14 +106,14 @@ TEST(Digest, ChangesWithEverySinglePair) {
   EXPECT_NE(digestOf({{0, 1}, {1, 2}, {2, 4}}), expected);
   EXPECT_NE(digestOf({{0, 1}, {1, 2}, {3, 2}}), expected);
   EXPECT_NE(digestOf({{0, 1}, {1, 2}, {2, 3}, {2, 3}}), expected);
-  // One pair missed and another twice: the count is right, the hash is not.
+  // A missed and a duplicate pair: the count is right, the hash is not.
   EXPECT_NE(digestOf({{0, 1}, {1, 2}, {1, 2}}).hash, expected.hash);
 }
 
 TEST(Oracle, IsRightWithAnyBudget) {
   std::vector<std::vector<Aabb>> frames;
   for (std::uint32_t f = 0; f < 4; ++f) frames.push_back(inputs::teleporting(400, f, 9));
-  // Nothing kept; room for about one frame; room for all.
+  // Memory for no frame, for about one, and for all frames.
   for (const std::size_t budget : {std::size_t{0}, std::size_t{20'000}, std::size_t{1} << 30}) {
     Oracle oracle(budget);
     for (int pass = 0; pass < 2; ++pass) {
@@ -126,7 +126,7 @@ TEST(Oracle, IsRightWithAnyBudget) {
   }
 }
 
-// The same frame number of another scene must not bring back the first one's answer.
+// The same frame number of another scene must not return the cached answer of the first scene.
 TEST(Oracle, AnswersForTheBoxesItIsGiven) {
   Oracle oracle;
   const std::vector<Aabb> three = chain(3);
@@ -138,7 +138,7 @@ TEST(Oracle, AnswersForTheBoxesItIsGiven) {
   EXPECT_EQ(oracle.pairs(three).size(), 2U);
 }
 
-// Nor must the answer of another filter.
+// Another filter must not return the cached answer either.
 TEST(Oracle, AnswersForTheFilterItIsGiven) {
   Oracle oracle;
   const std::vector<Aabb> boxes = chain(3);
@@ -149,15 +149,15 @@ TEST(Oracle, AnswersForTheFilterItIsGiven) {
   EXPECT_EQ(oracle.pairDigest(boxes).count, 2U);
 }
 
-// Bodies that are absent, and pairs that are not wanted: any answer with them is wrong.
+// Pairs of absent bodies, and filtered pairs, are wrong.
 TEST(Difference, CallsPairsFalseThatAreNotWanted) {
   std::vector<Aabb> boxes = chain(4);
   boxes[3] = kEmptyBox;
   const std::vector<BodyGroups> bodies = {{.layer = 1}, {.layer = 1}, {}, {}};
   const CollisionFilter filter(bodies, LayerMatrix().set(0, 1));
   const std::vector<Pair> answer = {{0, 1}, {1, 2}, {2, 3}};
-  const PairRun run = answer;
-  const FrameDifference difference = findDifference({&run, 1}, bruteForcePairs(boxes, filter),
+  const PairRun span = answer;
+  const FrameDifference difference = findDifference({&span, 1}, bruteForcePairs(boxes, filter),
                                                     {.index = 1, .boxes = boxes}, 10, filter);
   EXPECT_EQ(difference.false_count, 2U);
   EXPECT_EQ(difference.missed_count + difference.allowed_extra_count, 0U);

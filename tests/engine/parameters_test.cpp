@@ -1,4 +1,4 @@
-// Typed parameters: from text, to text, and what is refused.
+// Typed parameters: conversion from and to text, and invalid values.
 
 #include "broadmark/parameters.h"
 
@@ -15,8 +15,8 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// One parameter of each type.
-class Knobs final : public Parametrised {
+/// A parameter of each type.
+class TypedParameters final : public Parametrised {
  public:
   bool verbose = false;
   std::int64_t cells = 200;
@@ -36,19 +36,19 @@ class Knobs final : public Parametrised {
 };
 
 TEST(Parameters, AllTypesAreSetFromText) {
-  Knobs knobs;
-  setParameters(knobs, {{"verbose", "on"},
-                        {"cells", "1000"},
-                        {"margin", "2.5e-1"},
-                        {"scale", "-3"},
-                        {"shape", "spheres"},
-                        {"input", "a b=c"}});
-  EXPECT_TRUE(knobs.verbose);
-  EXPECT_EQ(knobs.cells, 1000);
-  EXPECT_EQ(knobs.margin, 0.25);
-  EXPECT_EQ(knobs.scale, -3);
-  EXPECT_EQ(knobs.shape.value, "spheres");
-  EXPECT_EQ(knobs.input, "a b=c");
+  TypedParameters parameters;
+  setParameters(parameters, {{"verbose", "on"},
+                             {"cells", "1000"},
+                             {"margin", "2.5e-1"},
+                             {"scale", "-3"},
+                             {"shape", "spheres"},
+                             {"input", "a b=c"}});
+  EXPECT_TRUE(parameters.verbose);
+  EXPECT_EQ(parameters.cells, 1000);
+  EXPECT_EQ(parameters.margin, 0.25);
+  EXPECT_EQ(parameters.scale, -3);
+  EXPECT_EQ(parameters.shape.value, "spheres");
+  EXPECT_EQ(parameters.input, "a b=c");
 }
 
 TEST(Parameters, UnitsAreThoseThatTheExplanationEndsWith) {
@@ -69,30 +69,30 @@ TEST(Parameters, SwitchesTakeTheUsualWords) {
                                                                {"off", false},
                                                                {"false", false},
                                                                {"0", false}}) {
-    Knobs knobs;
-    knobs.verbose = !value;
-    setParameters(knobs, {{"verbose", text}});
-    EXPECT_EQ(knobs.verbose, value) << text;
+    TypedParameters parameters;
+    parameters.verbose = !value;
+    setParameters(parameters, {{"verbose", text}});
+    EXPECT_EQ(parameters.verbose, value) << text;
   }
 }
 
 TEST(Parameters, WhatIsNotSetKeepsItsDefault) {
-  Knobs knobs;
-  setParameters(knobs, {});
-  EXPECT_EQ(parameterValues(knobs), (ParameterValues{{"verbose", "off"},
-                                                     {"cells", "200"},
-                                                     {"margin", "0.01"},
-                                                     {"scale", "1"},
-                                                     {"shape", "cubes"},
-                                                     {"input", ""}}));
+  TypedParameters parameters;
+  setParameters(parameters, {});
+  EXPECT_EQ(parameterValues(parameters), (ParameterValues{{"verbose", "off"},
+                                                          {"cells", "200"},
+                                                          {"margin", "0.01"},
+                                                          {"scale", "1"},
+                                                          {"shape", "cubes"},
+                                                          {"input", ""}}));
 }
 
 TEST(Parameters, TextReadsBackAsTheSameValue) {
   for (const double value : {0.1, 1.0 / 3, -1e-300, DBL_MAX, 123456789.123456789}) {
-    Knobs knobs;
-    knobs.scale = value;
-    Knobs copy;
-    setParameters(copy, parameterValues(knobs));
+    TypedParameters parameters;
+    parameters.scale = value;
+    TypedParameters copy;
+    setParameters(copy, parameterValues(parameters));
     EXPECT_EQ(copy.scale, value);
   }
 }
@@ -106,11 +106,11 @@ TEST(Parameters, BadValuesAreRefusedAndNamed) {
       {"shape", {"", "cube", "Cubes", "cones"}}};
   for (const auto& [name, texts] : bad) {
     for (const std::string& text : texts) {
-      Knobs knobs;
-      const auto set = [&] { setParameters(knobs, {{name, text}}); };
+      TypedParameters parameters;
+      const auto set = [&] { setParameters(parameters, {{name, text}}); };
       EXPECT_THAT(inputErrorOf(set), AllOf(HasSubstr(name), HasSubstr("'" + text + "'")));
-      EXPECT_EQ(parameterValues(knobs), [] {
-        Knobs untouched;
+      EXPECT_EQ(parameterValues(parameters), [] {
+        TypedParameters untouched;
         return parameterValues(untouched);
       }());
     }
@@ -118,22 +118,22 @@ TEST(Parameters, BadValuesAreRefusedAndNamed) {
 }
 
 TEST(Parameters, MessagesSayWhatWouldBeRight) {
-  Knobs knobs;
+  TypedParameters parameters;
   EXPECT_THAT(inputErrorOf([&] {
-                setParameters(knobs, {{"cells", "0"}});
+                setParameters(parameters, {{"cells", "0"}});
               }),
               AllOf(HasSubstr("cells"), HasSubstr("'0'"), HasSubstr("1…1000")));
   EXPECT_THAT(inputErrorOf([&] {
-                setParameters(knobs, {{"shape", "cube"}});
+                setParameters(parameters, {{"shape", "cube"}});
               }),
               AllOf(HasSubstr("shape"), HasSubstr("'cube'"), HasSubstr("did you mean 'cubes'"),
                     HasSubstr("spheres")));
 }
 
 TEST(Parameters, UnknownNamesSuggestTheNearest) {
-  Knobs knobs;
+  TypedParameters parameters;
   EXPECT_THAT(inputErrorOf([&] {
-                setParameters(knobs, {{"cell", "7"}});
+                setParameters(parameters, {{"cell", "7"}});
               }),
               AllOf(HasSubstr("'cell'"), HasSubstr("did you mean 'cells'?")));
   Parametrised nothing;
@@ -145,8 +145,9 @@ TEST(Parameters, UnknownNamesSuggestTheNearest) {
 
 TEST(Parameters, RangesAsText) {
   std::map<std::string, std::string> ranges;
-  Knobs knobs;
-  knobs.visitParameters([&](const Parameter& p) { ranges.emplace(p.name, parameterRange(p)); });
+  TypedParameters parameters;
+  parameters.visitParameters(
+      [&](const Parameter& p) { ranges.emplace(p.name, parameterRange(p)); });
   EXPECT_EQ(ranges["verbose"], "on|off");
   EXPECT_EQ(ranges["cells"], "1…1000");
   EXPECT_EQ(ranges["margin"], "0…1");

@@ -1,5 +1,5 @@
-// Several worlds at one place, an instance for each: what each gets to see, and what becomes of
-// their answers.
+// Several worlds at the same position, with an instance for each: the bodies of each instance, and
+// the combined answers.
 
 #include "broadmark/adapters.h"
 
@@ -31,7 +31,7 @@ using Ids = std::vector<std::uint32_t>;
 
 Pairs concatenated(PairRuns runs) {
   Pairs pairs;
-  for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+  for (const PairRun pair_run : runs) pairs.insert(pairs.end(), pair_run.begin(), pair_run.end());
   return pairs;
 }
 Pairs sorted(Pairs pairs) {
@@ -39,7 +39,7 @@ Pairs sorted(Pairs pairs) {
   return pairs;
 }
 
-/// Knows pairs and events by definition, and keeps what it was shown.
+/// Finds pairs and events by definition, and records its input.
 class Witness final : public BroadPhase {
  public:
   explicit Witness(const Pairs& nonsense) : nonsense_(nonsense) {}
@@ -50,27 +50,27 @@ class Witness final : public BroadPhase {
     scene_ = scene;
     threads_ = execution.threads();
     isa_ = execution.isa();
-    look(first);
-    began_ = now_ = bruteForcePairs(boxes_, scene.filter);
+    record(first);
+    began_ = pairs_ = bruteForcePairs(boxes_, scene.filter);
   }
   void updateObjects(const Frame& frame) override {
-    look(frame);
+    record(frame);
     phases_ = 1;
   }
   void cleanCache() override { phases_ = phases_ * 10 + 2; }
   void updateStructures() override { phases_ = phases_ * 10 + 3; }
   void searchOverlaps() override {
     phases_ = phases_ * 10 + 4;
-    const Pairs before = std::exchange(now_, bruteForcePairs(boxes_, scene_.filter));
+    const Pairs before = std::exchange(pairs_, bruteForcePairs(boxes_, scene_.filter));
     began_.clear();
     ended_.clear();
-    std::ranges::set_difference(now_, before, std::back_inserter(began_));
-    std::ranges::set_difference(before, now_, std::back_inserter(ended_));
-    now_.insert(now_.end(), nonsense_.begin(), nonsense_.end());
+    std::ranges::set_difference(pairs_, before, std::back_inserter(began_));
+    std::ranges::set_difference(before, pairs_, std::back_inserter(ended_));
+    pairs_.insert(pairs_.end(), nonsense_.begin(), nonsense_.end());
   }
   [[nodiscard]] PairRuns overlaps() const override {
-    const auto half = static_cast<std::ptrdiff_t>(now_.size() / 2);
-    runs_ = {PairRun(now_.begin(), now_.begin() + half), PairRun(now_.begin() + half, now_.end())};
+    const PairRun pairs = pairs_;
+    runs_ = {pairs.first(pairs.size() / 2), pairs.subspan(pairs.size() / 2)};
     return runs_;
   }
   void reportEvents() override { reports_events_ = true; }
@@ -91,19 +91,19 @@ class Witness final : public BroadPhase {
   void visitSetup(const CounterVisitor& visit) const override { visit("starts", 1); }
   [[nodiscard]] std::string validate() const override { return fault_; }
 
-  // What it was shown.
+  // The recorded input.
   SceneInfo scene_;
   int threads_ = 0;
   Isa isa_ = Isa::avx512;
   std::uint32_t index_ = 0;
   Boxes boxes_;
   Ids changed_;
-  int frames_ = -1;  ///< after the initial pose
+  int frames_ = -1;  ///< without the initial pose
   int phases_ = 0;   ///< of the last frame: 1234
   std::string fault_;
 
  private:
-  void look(const Frame& frame) {
+  void record(const Frame& frame) {
     index_ = frame.index;
     boxes_.assign(frame.boxes.begin(), frame.boxes.end());
     changed_.assign(frame.changed->begin(), frame.changed->end());
@@ -112,7 +112,7 @@ class Witness final : public BroadPhase {
 
   const Pairs& nonsense_;
   bool reports_events_ = false;
-  Pairs now_;
+  Pairs pairs_;
   Pairs began_;
   Pairs ended_;
   mutable std::vector<PairRun> runs_;
@@ -120,16 +120,16 @@ class Witness final : public BroadPhase {
   mutable PairRun ended_run_;
 };
 
-CollisionFilter worldsOf(const Ids& of_bodies) {
+CollisionFilter worldsOf(const Ids& body_worlds) {
   std::vector<BodyGroups> groups;
-  for (const std::uint32_t world : of_bodies) groups.push_back({.world = world});
+  for (const std::uint32_t world : body_worlds) groups.push_back({.world = world});
   return {groups, LayerMatrix().set(0, 0)};
 }
 
 Aabb unitAt(float x) { return inputs::boxAt({x, 0, 0}, {1, 1, 1}); }
 
-/// Worlds of witnesses, frame by frame.
-class Watched {
+/// A witness for each world.
+class Worlds {
  public:
   struct Options {
     int threads = 1;
@@ -138,7 +138,7 @@ class Watched {
     Pairs nonsense = {};
   };
 
-  Watched(const CollisionFilter& filter, const Boxes& first, Options options)
+  Worlds(const CollisionFilter& filter, const Boxes& first, Options options)
       : options_(std::move(options)), execution_(options_.threads, Isa::sse2) {
     SceneInfo scene;
     scene.name = "Worlds";
@@ -156,7 +156,7 @@ class Watched {
     if (options_.events) worlds_->reportEvents();
     worlds_->initialize(scene, complete(first), execution_);
   }
-  Watched(const CollisionFilter& filter, const Boxes& first) : Watched(filter, first, Options()) {}
+  Worlds(const CollisionFilter& filter, const Boxes& first) : Worlds(filter, first, Options()) {}
 
   void step(const Boxes& boxes) {
     worlds_->updateObjects(complete(boxes));
@@ -170,7 +170,7 @@ class Watched {
   [[nodiscard]] std::size_t count() const { return witnesses_.size(); }
 
  private:
-  /// Its boxes and changes are gone after the call, as those of any frame are.
+  /// The frame's boxes and changes are valid until the next call, as those of any frame.
   Frame complete(const Boxes& boxes) {
     boxes_ = boxes;
     Frame frame = changes_.complete({index_++, boxes_});
@@ -203,15 +203,15 @@ TEST(PerWorldBroadPhase, ShowEachInstanceItsOwnBodiesOnly) {
   std::vector<BodyGroups> groups = {{.layer = 3, .world = 9},
                                     {.world = 2, .tags = {5, 6, 7}},
                                     {.layer = 1, .world = 9},
-                                    {.world = 4},  // alone: nobody needs to look at it
+                                    {.world = 4},  // a single body: no instance
                                     {.world = 2}};
   const LayerMatrix matrix = LayerMatrix().set(0, 0).set(1, 3);
   Boxes boxes = {unitAt(0), unitAt(1), unitAt(2), unitAt(3), unitAt(4)};
-  Watched watched({groups, matrix}, boxes);
-  ASSERT_EQ(watched.count(), 2U);
-  EXPECT_EQ(watched.all().margin(), 0.25F);
-  const Witness& two = watched.of(0);
-  const Witness& nine = watched.of(1);
+  Worlds worlds({groups, matrix}, boxes);
+  ASSERT_EQ(worlds.count(), 2U);
+  EXPECT_EQ(worlds.all().margin(), 0.25F);
+  const Witness& two = worlds.of(0);
+  const Witness& nine = worlds.of(1);
   EXPECT_EQ(two.boxes_, (Boxes{boxes[1], boxes[4]}));
   EXPECT_EQ(nine.boxes_, (Boxes{boxes[0], boxes[2]}));
   for (const Witness* witness : {&two, &nine}) {
@@ -225,7 +225,7 @@ TEST(PerWorldBroadPhase, ShowEachInstanceItsOwnBodiesOnly) {
   EXPECT_EQ(nine.scene_.filter.groupsOf(0).layer, 3);
 
   boxes[2] = boxes[3] = unitAt(8);
-  watched.step(boxes);
+  worlds.step(boxes);
   EXPECT_EQ(nine.boxes_, (Boxes{boxes[0], boxes[2]}));
   EXPECT_THAT(nine.changed_, ElementsAre(1));
   EXPECT_THAT(two.changed_, IsEmpty());
@@ -234,58 +234,58 @@ TEST(PerWorldBroadPhase, ShowEachInstanceItsOwnBodiesOnly) {
 
 TEST(PerWorldBroadPhase, OfOneBodyEachHaveNoInstance) {
   Boxes boxes(3, unitAt(0));
-  Watched watched(worldsOf({1, 2, 3}), boxes);
+  Worlds worlds(worldsOf({1, 2, 3}), boxes);
   boxes[1] = unitAt(1);
-  watched.step(boxes);
-  EXPECT_EQ(watched.count(), 0U);
-  EXPECT_THAT(concatenated(watched.all().overlaps()), IsEmpty());
-  EXPECT_EQ(watched.all().margin(), 0);
+  worlds.step(boxes);
+  EXPECT_EQ(worlds.count(), 0U);
+  EXPECT_THAT(concatenated(worlds.all().overlaps()), IsEmpty());
+  EXPECT_EQ(worlds.all().margin(), 0);
 }
 
 TEST(PerWorldBroadPhase, InWhichNothingChangesAreNotTouchedAndKeepTheirAnswers) {
   const CollisionFilter filter = worldsOf({0, 0, 1, 1, 2, 2});
   const Boxes first(6, unitAt(0));
   Boxes boxes = first;
-  Watched watched(filter, boxes);
-  watched.step(boxes);  // the first frame is for all: before it there are no answers
-  for (std::size_t world = 0; world < 3; ++world) EXPECT_EQ(watched.of(world).frames_, 1);
-  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}, {2, 3}, {4, 5}}));
+  Worlds worlds(filter, boxes);
+  worlds.step(boxes);  // processes all worlds: there are no previous answers
+  for (std::size_t world = 0; world < 3; ++world) EXPECT_EQ(worlds.of(world).frames_, 1);
+  EXPECT_EQ(concatenated(worlds.all().overlaps()), (Pairs{{0, 1}, {2, 3}, {4, 5}}));
   boxes[3] = unitAt(9);
-  watched.step(boxes);
-  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
-  watched.step(boxes);
-  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
+  worlds.step(boxes);
+  EXPECT_EQ(concatenated(worlds.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
+  worlds.step(boxes);
+  EXPECT_EQ(concatenated(worlds.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
   boxes[0] = unitAt(0.5F);
   boxes[4] = unitAt(9);
-  watched.step(boxes);
-  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}}));
-  EXPECT_EQ(watched.of(0).frames_, 2);
-  EXPECT_EQ(watched.of(1).frames_, 2);
-  EXPECT_EQ(watched.of(2).frames_, 2);
-  // To each its frames are frames that follow each other: what changed is since the one before.
-  EXPECT_EQ(watched.of(1).index_, 2U);
+  worlds.step(boxes);
+  EXPECT_EQ(concatenated(worlds.all().overlaps()), (Pairs{{0, 1}}));
+  EXPECT_EQ(worlds.of(0).frames_, 2);
+  EXPECT_EQ(worlds.of(1).frames_, 2);
+  EXPECT_EQ(worlds.of(2).frames_, 2);
+  // Each instance has consecutive frames: the changes are those since its previous frame.
+  EXPECT_EQ(worlds.of(1).index_, 2U);
 }
 
 TEST(PerWorldBroadPhase, InWhichNothingChangesHaveNoEvents) {
   Boxes boxes(4, unitAt(0));
-  Watched watched(worldsOf({0, 1, 0, 1}), boxes, {.events = true});
-  EXPECT_EQ(concatenated(watched.all().events().began), (Pairs{{0, 2}, {1, 3}}));
-  watched.step(boxes);
-  EXPECT_EQ(eventCount(watched.all().events()), 0U);
+  Worlds worlds(worldsOf({0, 1, 0, 1}), boxes, {.events = true});
+  EXPECT_EQ(concatenated(worlds.all().events().began), (Pairs{{0, 2}, {1, 3}}));
+  worlds.step(boxes);
+  EXPECT_EQ(eventCount(worlds.all().events()), 0U);
   boxes[3] = unitAt(9);
-  watched.step(boxes);
-  EXPECT_THAT(concatenated(watched.all().events().began), IsEmpty());
-  EXPECT_EQ(concatenated(watched.all().events().ended), (Pairs{{1, 3}}));
-  watched.step(boxes);
-  EXPECT_EQ(eventCount(watched.all().events()), 0U);
+  worlds.step(boxes);
+  EXPECT_THAT(concatenated(worlds.all().events().began), IsEmpty());
+  EXPECT_EQ(concatenated(worlds.all().events().ended), (Pairs{{1, 3}}));
+  worlds.step(boxes);
+  EXPECT_EQ(eventCount(worlds.all().events()), 0U);
   boxes[0] = unitAt(9);
   boxes[3] = unitAt(0);
-  watched.step(boxes);
-  EXPECT_EQ(concatenated(watched.all().events().began), (Pairs{{1, 3}}));
-  EXPECT_EQ(concatenated(watched.all().events().ended), (Pairs{{0, 2}}));
+  worlds.step(boxes);
+  EXPECT_EQ(concatenated(worlds.all().events().began), (Pairs{{1, 3}}));
+  EXPECT_EQ(concatenated(worlds.all().events().ended), (Pairs{{0, 2}}));
 }
 
-// Some worlds are empty in some frames, or change late; their bodies are mixed.
+// Some worlds are empty in some frames, or change late; their bodies are interleaved.
 TEST(PerWorldBroadPhase, AnswerWithTheScenesOwnIdsWhateverTheTeam) {
   constexpr std::uint32_t kAll = 90;
   constexpr std::uint32_t kWorlds = 7;
@@ -300,9 +300,9 @@ TEST(PerWorldBroadPhase, AnswerWithTheScenesOwnIdsWhateverTheTeam) {
       });
   for (const int threads : {1, 2, 3, 7, 8}) {
     SCOPED_TRACE(threads);
-    Watched of_pairs(filter, frames[0], {.threads = threads});
-    Watched again(filter, frames[0], {.threads = threads});
-    Watched of_events(filter, frames[0], {.threads = threads, .events = true});
+    Worlds of_pairs(filter, frames[0], {.threads = threads});
+    Worlds again(filter, frames[0], {.threads = threads});
+    Worlds of_events(filter, frames[0], {.threads = threads, .events = true});
     EventAccumulator followed;
     followed.apply(of_events.all().events(), kAll);
     for (std::size_t frame = 1; frame < frames.size(); ++frame) {
@@ -319,34 +319,34 @@ TEST(PerWorldBroadPhase, AnswerWithTheScenesOwnIdsWhateverTheTeam) {
   }
 }
 
-// Order and repetition are kept; ids that do not exist stay such.
+// Preserves order and duplicates; invalid ids remain invalid.
 TEST(PerWorldBroadPhase, LetWrongPairsBeWrong) {
   const Boxes boxes = {unitAt(0), unitAt(0), unitAt(5), unitAt(9)};
-  Watched watched(worldsOf({0, 1, 0, 1}), boxes,
-                  {.nonsense = {{1, 0}, {1, 1}, {0, 2}, {0xFFFF'FFFF, 0}}});
-  watched.step(boxes);
+  Worlds worlds(worldsOf({0, 1, 0, 1}), boxes,
+                {.nonsense = {{1, 0}, {1, 1}, {0, 2}, {0xFFFF'FFFF, 0}}});
+  worlds.step(boxes);
   constexpr Pair kNone = {0xFFFF'FFFF, 0xFFFF'FFFF};
-  EXPECT_EQ(concatenated(watched.all().overlaps()),
+  EXPECT_EQ(concatenated(worlds.all().overlaps()),
             (Pairs{{2, 0}, {2, 2}, kNone, kNone, {3, 1}, {3, 3}, kNone, kNone}));
 }
 
 TEST(PerWorldBroadPhase, AreSharedOutWhereEachWorkerGetsOne) {
   const Ids three = {0, 0, 1, 1, 2, 2};
   const Boxes boxes(three.size(), unitAt(0));
-  const auto threads_of_each = [&](const Watched::Options& options) {
-    Watched watched(worldsOf(three), boxes, options);
+  const auto instance_threads = [&](const Worlds::Options& options) {
+    Worlds worlds(worldsOf(three), boxes, options);
     std::vector<int> threads;
-    for (std::size_t world = 0; world < watched.count(); ++world) {
-      EXPECT_EQ(watched.of(world).isa_, Isa::sse2);
-      threads.push_back(watched.of(world).threads_);
+    for (std::size_t world = 0; world < worlds.count(); ++world) {
+      EXPECT_EQ(worlds.of(world).isa_, Isa::sse2);
+      threads.push_back(worlds.of(world).threads_);
     }
     return threads;
   };
-  EXPECT_THAT(threads_of_each({.threads = 1}), ElementsAre(1, 1, 1));
-  EXPECT_THAT(threads_of_each({.threads = 2}), ElementsAre(1, 1, 1));
-  EXPECT_THAT(threads_of_each({.threads = 3}), ElementsAre(1, 1, 1));
-  EXPECT_THAT(threads_of_each({.threads = 4}), ElementsAre(4, 4, 4));
-  EXPECT_THAT(threads_of_each({.threads = 2, .concurrent = false}), ElementsAre(2, 2, 2));
+  EXPECT_THAT(instance_threads({.threads = 1}), ElementsAre(1, 1, 1));
+  EXPECT_THAT(instance_threads({.threads = 2}), ElementsAre(1, 1, 1));
+  EXPECT_THAT(instance_threads({.threads = 3}), ElementsAre(1, 1, 1));
+  EXPECT_THAT(instance_threads({.threads = 4}), ElementsAre(4, 4, 4));
+  EXPECT_THAT(instance_threads({.threads = 2, .concurrent = false}), ElementsAre(2, 2, 2));
 }
 
 std::map<std::string, std::uint64_t> countersOf(
@@ -360,11 +360,11 @@ std::map<std::string, std::uint64_t> countersOf(
 
 TEST(PerWorldBroadPhase, TellAndDrawWhatAllInstancesDo) {
   Boxes boxes(7, unitAt(0));
-  Watched watched(worldsOf({0, 0, 1, 1, 1, 20, 20}), boxes);
-  watched.step(boxes);
+  Worlds worlds(worldsOf({0, 0, 1, 1, 1, 20, 20}), boxes);
+  worlds.step(boxes);
   boxes[0] = boxes[2] = boxes[3] = unitAt(1);
-  watched.step(boxes);
-  const BroadPhase& all = watched.all();
+  worlds.step(boxes);
+  const BroadPhase& all = worlds.all();
   using Counts = std::map<std::string, std::uint64_t>;
   EXPECT_EQ(countersOf([&](const auto& visit) { all.visitCounters(visit); }),
             (Counts{{"worlds with changes", 2}, {"changed", 3}, {"bodies", 5}}));
@@ -375,24 +375,24 @@ TEST(PerWorldBroadPhase, TellAndDrawWhatAllInstancesDo) {
   all.drawStructure(drawing);
   EXPECT_EQ(drawing.boxes().size(), 3U);
   EXPECT_EQ(all.validate(), "");
-  watched.of(2).fault_ = "a leaf is lost";
+  worlds.of(2).fault_ = "a leaf is lost";
   EXPECT_EQ(all.validate(), "world 20: a leaf is lost");
 }
 
-/// Whether a case with these traits has an instance for each of four worlds of so many bodies.
-bool isApart(const AlgorithmTraits& traits, std::uint32_t bodies_each, std::uint32_t worlds = 4) {
+/// Whether a case with these traits has an instance for each of four worlds of `bodies_each`.
+bool isSplit(const AlgorithmTraits& traits, std::uint32_t bodies_each, std::uint32_t worlds = 4) {
   const Pairs no_nonsense;
-  Case run;
-  run.algorithm.traits = traits;
-  run.algorithm.create = [&] { return std::make_unique<Witness>(no_nonsense); };
-  Ids of_bodies;
-  for (std::uint32_t i = 0; i < 4 * bodies_each; ++i) of_bodies.push_back(i % worlds);
+  Case test_case;
+  test_case.algorithm.traits = traits;
+  test_case.algorithm.create = [&] { return std::make_unique<Witness>(no_nonsense); };
+  Ids body_worlds;
+  for (std::uint32_t i = 0; i < 4 * bodies_each; ++i) body_worlds.push_back(i % worlds);
   SceneInfo scene;
   scene.objects = 4 * bodies_each;
-  scene.filter = worldsOf(of_bodies);
+  scene.filter = worldsOf(body_worlds);
   const Boxes boxes(scene.objects);
   const Ids none;
-  InProcessExecutor host(run);
+  InProcessExecutor host(test_case);
   host.start(scene, {0, boxes, none});
   host.step({1, boxes, none});
   return host.counters().contains("worlds with changes");
@@ -407,14 +407,14 @@ TEST(PerWorldBroadPhase, AreForThoseWhoWantThemAndForManyBodies) {
                                           .instance_per_world = true};
   const AlgorithmTraits on_device = {.on_device = true,
                                      .changing_worlds = ChangingWorlds::compacted};
-  EXPECT_TRUE(isApart(native_each, 3));
-  EXPECT_FALSE(isApart(native_each, 3, 1));
-  EXPECT_FALSE(isApart(native, 100));
-  EXPECT_TRUE(isApart(compacted_each, 3));
-  EXPECT_FALSE(isApart(compacted, 99));
-  EXPECT_TRUE(isApart(compacted, 100));
-  EXPECT_FALSE(isApart(compacted, 100, 1));
-  EXPECT_FALSE(isApart(on_device, 100));
+  EXPECT_TRUE(isSplit(native_each, 3));
+  EXPECT_FALSE(isSplit(native_each, 3, 1));
+  EXPECT_FALSE(isSplit(native, 100));
+  EXPECT_TRUE(isSplit(compacted_each, 3));
+  EXPECT_FALSE(isSplit(compacted, 99));
+  EXPECT_TRUE(isSplit(compacted, 100));
+  EXPECT_FALSE(isSplit(compacted, 100, 1));
+  EXPECT_FALSE(isSplit(on_device, 100));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// .posrot recordings: the bytes, tight boxes against their definition, and what may be wrong.
+// .posrot recordings: the bytes, tight boxes against their definition, and invalid files.
 
 #include "broadmark/recordings/posrot.h"
 
@@ -26,8 +26,8 @@ SceneInfo posrotScene(std::uint32_t objects, std::uint32_t frames, const char* t
   return {"FreeFall", type, objects, frames, {{-8, -8, -8, 0}, {8, 8, 8, 0}}};
 }
 
-/// Two bodies and two frames, spelled out: a bar of 4 × 1 × 2 around (2, 0, 0), turned by 0 and by
-/// 90 degrees about z, and a unit cube around (0, 5, 0) that never turns.
+/// Two bodies and two frames, as bytes: a bar of 4 × 1 × 2 around (2, 0, 0), rotated by 0 and by
+/// 90 degrees about z, and a unit cube around (0, 5, 0) that never rotates.
 Bytes handMadePosrot(const char* type = "Cubes") {
   Bytes bytes(256);
   std::memcpy(bytes.data(), "FreeFall", 8);
@@ -54,8 +54,8 @@ std::string posrotFault(const Bytes& bytes) {
   return tests::faultOf<PosrotReader>(bytes, "test.posrot");
 }
 
-/// `v` turned by `q`, by the formula q v q*, in double.
-std::array<double, 3> turned(const std::array<double, 3>& v, const Quaternion& q) {
+/// `v` rotated by `q`, by the formula q v q*, in double.
+std::array<double, 3> rotated(const std::array<double, 3>& v, const Quaternion& q) {
   const std::array<double, 3> u = {q[0], q[1], q[2]};
   const auto cross = [](const auto& a, const auto& b) {
     return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
@@ -67,16 +67,16 @@ std::array<double, 3> turned(const std::array<double, 3>& v, const Quaternion& q
           v[2] + 2 * (q[3] * t[2] + tt[2])};
 }
 
-/// The box around the eight turned corners: the definition.
+/// The box around the eight rotated corners: the definition.
 Aabb boxByCorners(const Vec3& half, const Pose& pose) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Aabb box{{kInfinity, kInfinity, kInfinity, 0}, {-kInfinity, -kInfinity, -kInfinity, 0}};
   for (int corner = 0; corner < 8; ++corner) {
-    std::array<double, 3> at{};
-    for (int axis = 0; axis < 3; ++axis) at[axis] = corner >> axis & 1 ? half[axis] : -half[axis];
-    at = turned(at, pose.rotation);
+    std::array<double, 3> v{};
+    for (int axis = 0; axis < 3; ++axis) v[axis] = corner >> axis & 1 ? half[axis] : -half[axis];
+    v = rotated(v, pose.rotation);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto x = static_cast<float>(pose.position[axis] + at[axis]);
+      const auto x = static_cast<float>(pose.position[axis] + v[axis]);
       box.min[axis] = std::min(box.min[axis], x);
       box.max[axis] = std::max(box.max[axis], x);
     }
@@ -84,9 +84,9 @@ Aabb boxByCorners(const Vec3& half, const Pose& pose) {
   return box;
 }
 
-class Movers {
+class RandomPoses {
  public:
-  explicit Movers(unsigned seed) : random_(seed) {}
+  explicit RandomPoses(unsigned seed) : random_(seed) {}
   float uniform(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(random_);
   }
@@ -166,7 +166,7 @@ TEST(Posrot, WhateverLiesInAPosesPaddingIsNotWritten) {
 TEST(Posrot, BoxesAreThoseAroundTheEightTurnedCorners) {
   constexpr std::uint32_t kBodies = 500;
   const TemporaryDirectory directory;
-  Movers random(3);
+  RandomPoses random(3);
   std::vector<Aabb> unturned;
   std::vector<Vec3> halves;
   for (std::uint32_t i = 0; i < kBodies; ++i) {
@@ -198,9 +198,9 @@ TEST(Posrot, BoxesOfSpheresDoNotDependOnTheRotation) {
   EXPECT_EQ(frame.boxes[0], (Aabb{{0, 0.5F, -1, 0}, {4, 1.5F, 1, 0}}));
 }
 
-// Initial corners are rounded to multiples of 2^-19 or so there; a cube is a cube nevertheless.
+// Initial corners are rounded to multiples of about 2^-19 there; cubes must remain cubes.
 TEST(Posrot, UsualSizesAreFoundExactlyFarFromTheOrigin) {
-  Movers random(5);
+  RandomPoses random(5);
   std::vector<Aabb> unturned;
   std::vector<Vec3> halves;
   for (const float size : {0.5F, 0.95F, 7.6F, 0.2F, 1.9F, 0.05F, 0.125F}) {
@@ -220,7 +220,7 @@ TEST(Posrot, UsualSizesAreFoundExactlyFarFromTheOrigin) {
 }
 
 TEST(Posrot, UnusualSizesAreFoundUpToTheRoundingOfTheCorners) {
-  Movers random(6);
+  RandomPoses random(6);
   std::vector<Aabb> unturned;
   std::vector<float> halves;
   for (int i = 0; i < 2000; ++i) {
@@ -275,7 +275,7 @@ TEST(Posrot, TheExtensionTellsTheKind) {
                static_cast<std::streamsize>(bytes.size()));
   }
   EXPECT_EQ(openRecordingFile(directory / "a.posrot")->at(1).boxes[1].max[1], 4.5F);
-  // Read as boxes, poses are nonsense.
+  // Poses read as boxes are invalid.
   for (const char* name : {"a.aabbs", "a"}) {
     EXPECT_THAT(inputErrorOf([&] { openRecordingFile(directory / name)->at(1); }),
                 HasSubstr("the box is inverted"));
@@ -314,7 +314,7 @@ TEST(BadPosrot, BrokenRecordsAreNamedWithTheirPlace) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kMax = std::numeric_limits<float>::max();
-  // Frame 1 lies at 304 + 32 · 2 = 368, frame 2 at 432.
+  // Frame 1 is at 304 + 32 · 2 = 368, frame 2 at 432.
   struct Fault {
     std::size_t offset;
     float value;
@@ -355,11 +355,11 @@ TEST(BadPosrot, WrongLengthsAndCounts) {
   Bytes longer = whole;
   longer.push_back(0);
   EXPECT_THAT(posrotFault(longer), HasSubstr("497 bytes is too long"));
-  Bytes lying = whole;
-  lying[259] = 0x40;  // 2^30 + 2 objects
-  EXPECT_THAT(posrotFault(lying), HasSubstr("too short"));
-  lying[259] = 0xFF;
-  EXPECT_THAT(posrotFault(lying), HasSubstr("byte 256: negative number of objects"));
+  Bytes wrong_count = whole;
+  wrong_count[259] = 0x40;  // 2^30 + 2 objects
+  EXPECT_THAT(posrotFault(wrong_count), HasSubstr("too short"));
+  wrong_count[259] = 0xFF;
+  EXPECT_THAT(posrotFault(wrong_count), HasSubstr("byte 256: negative number of objects"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Processor counters: what is counted and when, and how results keep it. Few machines of tests
-// allow the processor's own; page faults are counted in the same way.
+// Processor counters: counted events and intervals, and their storage in results. Few test machines
+// allow hardware counters; page faults are counted in the same way.
 
 #include "broadmark/harness/processor_counters.h"
 
@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kFaults = 200;
 
-/// Page faults as "cycles"; all other counters are of a kind that does not exist.
+/// Page faults as "cycles"; all other counters have an invalid type.
 ProcessorCounters::Events pageFaults() {
   constexpr std::uint32_t kUnknownType = 0xffffff;
   ProcessorCounters::Events events;
@@ -32,7 +32,7 @@ ProcessorCounters::Events pageFaults() {
   return events;
 }
 
-/// Touches new pages, and so makes so many faults.
+/// Touches kFaults new pages: each causes a page fault.
 void makeFaults() {
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const std::size_t size = kFaults * page;
@@ -88,18 +88,18 @@ TEST_F(CountedFaults, WhatTheSystemRefusesIsUnknown) {
   EXPECT_FALSE(counters_.counts()[ProcessorCounter::branch_misses]);
 }
 
-// Whether there are any depends on the machine; if so, a frame has cycles and instructions.
+// Counters depend on the machine; if there are any, a frame has cycles and instructions.
 TEST(ProcessorCountersOfARun, AreKeptPerRepetition) {
   const CaseResult result = runOnChain(caseOf(), {}, 2);
   ASSERT_EQ(result.repetitions.size(), 2U);
   for (const Repetition& repetition : result.repetitions) {
-    for (const auto which : {ProcessorCounter::cycles, ProcessorCounter::instructions}) {
-      EXPECT_GT(repetition.processor[which].value_or(1), 0U);
+    for (const auto counter : {ProcessorCounter::cycles, ProcessorCounter::instructions}) {
+      EXPECT_GT(repetition.processor[counter].value_or(1), 0U);
     }
   }
 }
 
-/// Two repetitions of two frames; cycles are known in one of them.
+/// Two repetitions of two frames; only the second has cycles.
 Results countedResults() {
   Results results;
   results.environments.emplace_back();

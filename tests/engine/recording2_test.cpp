@@ -1,5 +1,4 @@
-// .broadmark recordings: what is written comes back, in any order; and everything that may be wrong
-// with a file.
+// .broadmark recordings: written frames are read back in any order; and all kinds of invalid files.
 
 #include "broadmark/recordings/recording2.h"
 
@@ -31,7 +30,7 @@ using Frames = std::vector<std::vector<Aabb>>;
 
 constexpr std::uint32_t kSlots = 60;
 
-/// Boxes of which some change, come and go in each frame.
+/// Frames in which some boxes change, appear and vanish.
 Frames changingFrames(std::uint32_t bodies, std::uint32_t frames, int share_of_changes,
                       bool all_present) {
   inputs::Random random(bodies, frames);
@@ -68,7 +67,7 @@ std::string write(const std::filesystem::path& path, const SceneInfo& scene, con
   return writer.finish();
 }
 
-/// What Frame::changed has to be.
+/// The expected value of Frame::changed.
 std::vector<std::uint32_t> changesIn(const Frames& frames, std::uint32_t frame) {
   std::vector<std::uint32_t> changed;
   for (std::uint32_t body = 0; frame > 0 && body < frames[frame].size(); ++body) {
@@ -165,7 +164,7 @@ TEST(Recording2, AStillWorldIsSmall) {
             std::filesystem::file_size(directory / "a.aabbs") * 4 / 5);
 }
 
-// To the bit: what is converted back is the same file.
+// Bits are preserved, so that a file converted back is identical.
 TEST(Recording2, TellsZeroesApart) {
   const TemporaryDirectory directory;
   Frames frames(3, {Aabb{{0, 0, 0, 0}, {1, 1, 1, 0}}});
@@ -205,7 +204,7 @@ TEST(Recording2, IsTakenOnlyWhereAabbsDoesNotDo) {
               AllOf(HasSubstr("a.posrot"), HasSubstr(".aabbs or .broadmark")));
 }
 
-/// Frame 0 has bodies 0 to 2; in frame 1 body 1 has moved, in frame 2 body 2 is gone.
+/// Frame 0 has bodies 0 to 2; in frame 1 body 1 moves, in frame 2 body 2 vanishes.
 Bytes smallRecording() {
   const TemporaryDirectory directory;
   Frames frames(1, chain(3));
@@ -245,17 +244,17 @@ std::size_t frameOf(const Bytes& bytes, std::uint32_t frame) {
   return get<RecordedFrame>(bytes, indexOf(bytes) + kEntryBytes * frame).offset;
 }
 
-/// Puts the right checksums to spoilt bytes: as somebody's own writer would.
+/// Corrects the checksums of spoilt bytes, as another writer would.
 Bytes sealed(Bytes bytes) {
   const std::size_t index = indexOf(bytes);
   const auto raw = std::as_bytes(std::span(bytes));
-  for (std::size_t at = index; at + kEntryBytes < bytes.size(); at += kEntryBytes) {
-    auto entry = get<RecordedFrame>(bytes, at);
-    const std::size_t end = at + 2 * kEntryBytes < bytes.size()
-                                ? get<RecordedFrame>(bytes, at + kEntryBytes).offset
+  for (std::size_t offset = index; offset + kEntryBytes < bytes.size(); offset += kEntryBytes) {
+    auto entry = get<RecordedFrame>(bytes, offset);
+    const std::size_t end = offset + 2 * kEntryBytes < bytes.size()
+                                ? get<RecordedFrame>(bytes, offset + kEntryBytes).offset
                                 : index;
     entry.hash = hashOf(raw.subspan(entry.offset, end - entry.offset));
-    put(bytes, at, entry);
+    put(bytes, offset, entry);
   }
   Hasher hasher;
   hasher.add(raw.first(frameOf(bytes, 0)));
@@ -264,7 +263,7 @@ Bytes sealed(Bytes bytes) {
   return bytes;
 }
 
-/// With another text, as long, in the header.
+/// Replaces a text in the header by another text of the same length.
 Bytes withHeader(Bytes bytes, std::string_view text, std::string_view other) {
   const auto found = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
   EXPECT_EQ(text.size(), other.size());
@@ -302,7 +301,7 @@ TEST(BadRecording2, DamagedFramesAreNamed) {
                                         std::to_string(at + 63) + "): damaged"));
   EXPECT_THAT(inputErrorOf([&] { readerOf(bytes).at(2); }), HasSubstr("frame 1"));
   EXPECT_EQ(readerOf(bytes).at(0).boxes.size(), 3U);
-  bytes[at] = 99;  // also where the ids are nonsense
+  bytes[at] = 99;  // also with an invalid id
   EXPECT_THAT(faultOf(bytes), HasSubstr("damaged"));
 }
 
@@ -324,7 +323,7 @@ TEST(BadRecording2, IdsAndBoxesAreNamedWithTheirPlace) {
               HasSubstr("frame 1, body 1 (" + byte(1, 32) + "): the box is not a number"));
   EXPECT_THAT(spoilt(1, 44, kInfinity), HasSubstr("frame 1, body 1 (" + byte(1, 32)));
   EXPECT_THAT(spoilt(2, 32, 1.0F), HasSubstr("frame 2, body 2 (" + byte(2, 32)))
-      << "neither there nor absent";
+      << "neither present nor absent";
   EXPECT_THAT(spoilt(0, 28, 9.0F),
               HasSubstr("frame 0, body 1 (" + byte(0, 24) + "): the box is inverted"));
 }
@@ -355,7 +354,7 @@ TEST(BadRecording2, IdsAscend) {
   EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("body 2 among the changed ones"));
 }
 
-// Who believes that nothing else has changed misses pairs.
+// An unlisted change would make incremental algorithms miss pairs.
 TEST(BadRecording2, AKeyFrameChangesOnlyWhatItNames) {
   const TemporaryDirectory directory;
   Frames frames(3, chain(4));
@@ -375,7 +374,7 @@ TEST(BadRecording2, AKeyFrameChangesOnlyWhatItNames) {
 
 TEST(BadRecording2, HeadersOfOtherThings) {
   const Bytes whole = smallRecording();
-  const std::pair<std::string_view, std::string_view> all[] = {
+  const std::pair<std::string_view, std::string_view> replacements[] = {
       {"broadmark-recording/2", "broadmark-recording/3"},
       {"\"objects\": 3", "\"objects\": 9"},
       {"\"objects\": 3", "\"objects\":-3"},
@@ -392,7 +391,7 @@ TEST(BadRecording2, HeadersOfOtherThings) {
       {"\"scene_parameters\": null", "\"scene_parameters\": 1234"},
       {"{", "["},
   };
-  for (const auto& [text, other] : all) {
+  for (const auto& [text, other] : replacements) {
     EXPECT_THAT(faultOf(withHeader(whole, text, other)), StartsWith("test.broadmark: "))
         << text << " -> " << other;
   }
@@ -416,7 +415,7 @@ TEST(BadRecording2, AnIndexThatLeadsNowhere) {
   const auto spoilt = [&](int offset, auto value) {
     Bytes bytes = whole;
     put(bytes, entry + static_cast<std::size_t>(offset), value);
-    Hasher hasher;  // of the index, which leads elsewhere
+    Hasher hasher;  // of the spoilt index
     hasher.add(std::as_bytes(std::span(bytes)).first(frameOf(whole, 0)));
     hasher.add(std::as_bytes(std::span(bytes)).subspan(indexOf(whole), 3 * kEntryBytes));
     put(bytes, bytes.size() - 24, hasher.value());
@@ -428,7 +427,7 @@ TEST(BadRecording2, AnIndexThatLeadsNowhere) {
   EXPECT_THAT(spoilt(8, 4U), HasSubstr("index: frame 1"));
   EXPECT_THAT(spoilt(12, 2U), HasSubstr("index: frame 1"));
   EXPECT_THAT(spoilt(12, 1U), HasSubstr("index: frame 2"));
-  EXPECT_THAT(spoilt(-20, 1U), HasSubstr("index: frame 0")) << "the first one is a key frame";
+  EXPECT_THAT(spoilt(-20, 1U), HasSubstr("index: frame 0")) << "the first frame is a key frame";
 }
 
 TEST(Recording2Writer, LeavesNothingUnlessFinished) {

@@ -1,4 +1,4 @@
-// Recordings as bytes, to be spelled out and spoilt.
+// Recordings as bytes, for hand-made and invalid files.
 #pragma once
 
 #include <sys/mman.h>
@@ -28,7 +28,7 @@ inline void putFloat(Bytes& bytes, std::size_t offset, float value) {
   std::memcpy(bytes.data() + offset, &value, sizeof value);
 }
 
-/// Appends floats as they lie in a file.
+/// Appends floats in their file format.
 inline void append(Bytes& bytes, const std::vector<float>& values) {
   const auto* raw = reinterpret_cast<const unsigned char*>(values.data());
   bytes.insert(bytes.end(), raw, raw + values.size() * sizeof(float));
@@ -39,7 +39,7 @@ inline Bytes bytesOf(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A reader of these bytes, which messages call `name`.
+/// A reader of these bytes; `name` is the file name in messages.
 template <class Reader>
 Reader readerOf(const Bytes& bytes, const std::string& name) {
   FileDescriptor file(::memfd_create("recording", 0));
@@ -47,7 +47,7 @@ Reader readerOf(const Bytes& bytes, const std::string& name) {
   return {std::move(file), name};
 }
 
-/// What is said of a recording with these bytes, read to its end.
+/// The error of reading a recording with these bytes to its end.
 template <class Reader>
 std::string faultOf(const Bytes& bytes, const std::string& name) {
   return inputErrorOf([&] {

@@ -1,4 +1,4 @@
-// .aabbs recordings: the bytes, reading, writing, and everything that may be wrong with a file.
+// .aabbs recordings: the bytes, reading, writing, and all kinds of invalid files.
 
 #include "broadmark/recordings/recording.h"
 
@@ -24,7 +24,7 @@ using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A recording of two bodies, one frame and a world from -8 to 8, spelled out.
+/// A recording of two bodies, one frame and a world from -8 to 8, as bytes.
 Bytes handMadeRecording() {
   Bytes bytes(304);
   std::memcpy(bytes.data(), "FreeFall", 8);
@@ -225,7 +225,7 @@ TEST(RecordingWriter, RefusesBoxesThatNoReaderWouldTake) {
   EXPECT_EQ(writer.finishTemporary()->at(1).boxes.size(), 2U) << "the bad set was not written";
 }
 
-// Large sets are written while the caller makes the next one, in the same place.
+// Large sets are written while the caller prepares the next set in the same memory.
 TEST(RecordingWriter, CopiesLargeSets) {
   constexpr std::uint32_t kBodies = 50'000;
   RecordingWriter writer(SceneInfo{"Drift", "Cubes", kBodies, 3, unitBox(3)});
@@ -256,15 +256,15 @@ TEST(RecordingWriter, SaysWhereItCannotWrite) {
 TEST(RecordAll, CopiesASourceUnlessStopped) {
   const TemporaryDirectory directory;
   RecordingReader source = recordingOf(handMadeRecording());
-  source.at(1);  // it starts over, wherever the source is
+  source.at(1);  // recordAll() rewinds the source
   RecordingWriter copy(directory / "copy.aabbs", source.scene());
-  std::vector<std::uint32_t> told;
+  std::vector<std::uint32_t> reported;
   EXPECT_TRUE(recordAll(source, copy, [&](std::uint32_t frame) {
-    told.push_back(frame);
+    reported.push_back(frame);
     return true;
   }));
   EXPECT_EQ(copy.finish(), source.hash());
-  EXPECT_EQ(told, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(reported, (std::vector<std::uint32_t>{0, 1}));
 
   RecordingWriter stopped(directory / "stopped.aabbs", source.scene());
   EXPECT_FALSE(recordAll(source, stopped, [](std::uint32_t) { return false; }));
@@ -292,16 +292,16 @@ TEST(BadRecording, NegativeAndAbsurdCounts) {
     std::int32_t objects, frames;
     const char* fault;
   };
-  const Counts all[] = {{-1, 1, "byte 256: negative number of objects (-1)"},
-                        {INT_MIN, 1, "byte 256: negative"},
-                        {2, -1, "byte 260: negative number of frames (-1)"},
-                        {INT_MAX, INT_MAX, "too short"},
-                        {INT_MAX, 0, "too short"},
-                        {2, INT_MAX, "too short"},
-                        {0, INT_MAX, "byte 260: 2147483647 frames of no objects"},
-                        {2, 0, "too long"},
-                        {1, 1, "too long"}};
-  for (const Counts& counts : all) {
+  const Counts invalid[] = {{-1, 1, "byte 256: negative number of objects (-1)"},
+                            {INT_MIN, 1, "byte 256: negative"},
+                            {2, -1, "byte 260: negative number of frames (-1)"},
+                            {INT_MAX, INT_MAX, "too short"},
+                            {INT_MAX, 0, "too short"},
+                            {2, INT_MAX, "too short"},
+                            {0, INT_MAX, "byte 260: 2147483647 frames of no objects"},
+                            {2, 0, "too long"},
+                            {1, 1, "too long"}};
+  for (const Counts& counts : invalid) {
     Bytes bytes = handMadeRecording();
     putInt(bytes, 256, counts.objects);
     putInt(bytes, 260, counts.frames);
@@ -309,8 +309,8 @@ TEST(BadRecording, NegativeAndAbsurdCounts) {
   }
 }
 
-// 2^30 objects in 2^29 sets take 2^64 bytes, which is 0 in 64 bits: the size would look right, and
-// a frame would take 32 GiB.
+// 2^30 objects in 2^29 sets need 2^64 bytes, which is 0 in 64 bits: the size would seem right, and
+// a frame would need 32 GiB.
 TEST(BadRecording, CountsThatWrapAround) {
   Bytes bytes = handMadeRecording();
   bytes.resize(304);
@@ -322,7 +322,7 @@ TEST(BadRecording, CountsThatWrapAround) {
 TEST(BadRecording, BrokenBoxesAreNamedWithTheirPlace) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  // Frame 1, body 1 lies at 304 + 32 · (2 + 1) = 400.
+  // Frame 1, body 1 is at 304 + 32 · (2 + 1) = 400.
   struct Fault {
     std::size_t offset;
     float value;
@@ -375,14 +375,14 @@ TEST(BadRecording, WhatIsNoFile) {
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   const std::filesystem::path file = directory / "empty";
   { const std::ofstream empty(file); }
-  const std::pair<std::filesystem::path, const char*> all[] = {
+  const std::pair<std::filesystem::path, const char*> invalid[] = {
       {directory / "missing", "No such file"},
       {directory / "", "not a regular file"},
       {fifo, "not a regular file"},
       {"/dev/zero", "not a regular file"},
       {file / "within", "Not a directory"},
       {file, "0 bytes is too short"}};
-  for (const auto& [path, fault] : all) {
+  for (const auto& [path, fault] : invalid) {
     EXPECT_THAT(inputErrorOf([&] { RecordingReader reader(path); }),
                 AllOf(StartsWith(path.string()), HasSubstr(fault)));
   }

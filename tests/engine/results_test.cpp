@@ -1,4 +1,4 @@
-// Results: JSON and back, the keys that others rely on, CSV.
+// Results: JSON and back, stable keys, CSV.
 
 #include "broadmark/results/results.h"
 
@@ -38,10 +38,10 @@ FrameTimes times(std::int64_t ns) {
   return times;
 }
 
-/// What times() adds to the total.
+/// The offset of the total in times().
 constexpr auto kTotal = static_cast<std::int64_t>(Phase::total);
 
-/// Two cases: one with every field set, one with nothing but its name.
+/// Two cases: the first has all fields set, the second little more than its name.
 Results everything() {
   Results results;
   results.environments = {{.host = "desk",
@@ -140,7 +140,7 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   ASSERT_TRUE(full.bodies);
   EXPECT_EQ(full.bodies->mean, 2.5);
   EXPECT_EQ(full.bodies->max, 4U);
-  EXPECT_FALSE(copy.cases.at(1).bodies) << "where nobody is ever absent";
+  EXPECT_FALSE(copy.cases.at(1).bodies) << "all bodies are present";
   EXPECT_EQ(full.differences.at(0).invalid_pairs.at(1), (Pair{9, 0xFFFFFFFF}));
   EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3000 + kTotal);
   EXPECT_EQ(full.frames.at(0)[FrameCount::invalid], 3U);
@@ -272,10 +272,10 @@ TEST(ResultsJson, ParametersByFormerNamesAreRead) {
 TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
-    // Without conditions it is taken for results/1.
+    // Without conditions, it is read as results/1.
     const std::set<std::string> optional = {"peak_bytes", "counters",  "setup",  "device", "plugin",
                                             "conditions", "processor", "bodies", "answer"};
-    if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
+    if (optional.contains(item.key()) || item.key() == "summary") continue;  // derived
     Json json = whole;
     json["cases"][0].erase(item.key());
     EXPECT_THAT(inputErrorOf([&] { parseResults(json.dump(), "a.json"); }),
@@ -284,16 +284,16 @@ TEST(ResultsJson, MissingKeysAreNamed) {
   }
 }
 
-/// everything() as an earlier version wrote it.
+/// everything() in the format of an earlier version.
 Json asResults1() {
   Json json = Json::parse(format(everything(), "json"));
   json["schema"] = "broadmark-results/1";
   json["environment"] = json["environments"][0];
   json.erase("environments");
   json.erase("complete");
-  for (Json& one : json["cases"]) {
+  for (Json& result : json["cases"]) {
     for (const char* key : {"environment", "conditions", "frame_counts"}) {
-      one.erase(key);
+      result.erase(key);
     }
   }
   return json;
@@ -319,7 +319,7 @@ TEST(ResultsLines, HoldTheSame) {
   EXPECT_EQ(format(parseResults(lines, "a.jsonl"), "json"), format(everything(), "json"));
 }
 
-// A run may end at any moment: whatever is whole is kept, and the rest is known to be missing.
+// A run may end at any time: complete lines are read, and the results are marked incomplete.
 TEST(ResultsLines, ArePartialWhereverTheyEnd) {
   const std::string lines = format(everything(), "jsonl");
   const std::size_t first_line = lines.find('\n') + 1;
@@ -348,7 +348,7 @@ TEST(ResultsLines, ErrorsNameTheLine) {
               HasSubstr("line 2: neither an environment, a case nor the end"));
 }
 
-// Which had one list for false and allowed extra pairs.
+// They have a single list of false and allowed extra pairs.
 TEST(ResultsJson, FilesWithExtraPairsOnlyAreRead) {
   Json json = asResults1();
   const auto restate = [](Json& object, const std::string& suffix) {
@@ -356,9 +356,9 @@ TEST(ResultsJson, FilesWithExtraPairsOnlyAreRead) {
     object.erase("allowed_extra" + suffix);
     object["extra" + suffix] = 2;
   };
-  Json& one = json["cases"][0];
-  restate(one, "");
-  Json& difference = one["differences"][0];
+  Json& first = json["cases"][0];
+  restate(first, "");
+  Json& difference = first["differences"][0];
   restate(difference, "_count");
   restate(difference, "");
   difference["forbidden_count"] = 1;
@@ -409,7 +409,7 @@ TEST(ResultsDocumentation, ItsExampleIsAResultsFile) {
   EXPECT_TRUE(results.complete);
   ASSERT_THAT(results.cases, SizeIs(1));
   EXPECT_TRUE(results.cases[0].isComplete());
-  // As it would be written today, but for the digits of what is derived.
+  // In the current format, except for digits of derived values.
   std::istringstream lines(format(results, "jsonl"));
   std::istringstream documented(example);
   for (std::string line, shown; std::getline(lines, line) && std::getline(documented, shown);) {
@@ -417,8 +417,7 @@ TEST(ResultsDocumentation, ItsExampleIsAResultsFile) {
   }
 }
 
-/// Calls visit(key) for every key of an object and of what is in it, but for those whose names are
-/// data.
+/// Calls visit(key) for all keys of an object, recursively, except for keys that are data.
 template <class Visit>
 void eachKey(const Json& json, Visit&& visit) {
   for (const auto& [key, value] : json.items()) {
@@ -462,7 +461,7 @@ std::vector<std::vector<std::string>> parseCsv(const std::string& text) {
   return rows;
 }
 
-/// One row by column name.
+/// A row by column names.
 std::map<std::string, std::string> rowOf(const std::vector<std::vector<std::string>>& rows,
                                          std::size_t row) {
   std::map<std::string, std::string> fields;
@@ -491,7 +490,7 @@ TEST(ResultsCsv, OneRowPerCase) {
   for (const char* unknown :
        {"seconds_per_frame", "median_seconds", "ci95_low_seconds", "outliers", "initialize_seconds",
         "missed", "false", "allowed_extra", "invalid", "peak_bytes", "seed"}) {
-    EXPECT_EQ(bare[unknown], "") << unknown << ": what is not known is empty, not 0";
+    EXPECT_EQ(bare[unknown], "") << unknown << ": unknown values are empty, not 0";
   }
 }
 

@@ -1,4 +1,4 @@
-// The ratio of two runs: what it is of, and how often it claims what is not so.
+// The ratio of two runs: its definition, and its rate of false claims.
 
 #include "broadmark/analysis/run_ratio.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
-/// A result whose frames take these seconds, pass by pass.
+/// A result with these seconds of its frames, for each pass.
 CaseResult resultOf(const std::vector<std::vector<double>>& passes) {
   CaseResult result;
   for (const std::vector<double>& pass : passes) {
@@ -54,7 +54,7 @@ TEST(RunRatio, IsTheQuotientOfTheMeansOfLeastTimes) {
 }
 
 TEST(RunRatio, ManyPassesAreNoAdvantage) {
-  // Of three passes two are drawn: the least is 1 in two of three draws, else 2.
+  // Two of three passes are drawn: the minimum is 1 in two of three draws, else 2.
   const RunRatio ratio = ratioOf(resultOf({{1}, {2}, {3}}), resultOf({{1}, {2}}));
   EXPECT_NEAR(ratio.before, 4.0 / 3, 1e-12);
   EXPECT_DOUBLE_EQ(ratio.after, 1);
@@ -75,7 +75,7 @@ TEST(RunRatio, ClockTicksOfZeroStillHaveARatio) {
   EXPECT_DOUBLE_EQ(ratio.ratio.value, 1);
 }
 
-/// Two repetitions of 50 frames that all take this long, but for a thousandth.
+/// Two repetitions of 50 frames with this time; the second is slower by a thousandth.
 CaseResult constant(double seconds) {
   return resultOf({std::vector<double>(50, seconds), std::vector<double>(50, seconds * 1.001)});
 }
@@ -96,7 +96,7 @@ TEST(RunRatio, IsRelativeToTheMedianOfTheOtherCases) {
   EXPECT_GT(ratios[2].ratio.ci95.low, 1.19);
   for (const std::size_t other : {0U, 1U, 3U, 4U}) {
     EXPECT_NEAR(ratios[other].ratio.value, 1, 1e-6);
-    EXPECT_NEAR(ratios[other].drift.value(), 0.1, 1e-6) << "not moved by the odd one out";
+    EXPECT_NEAR(ratios[other].drift.value(), 0.1, 1e-6) << "not affected by the outlier";
   }
 }
 
@@ -156,7 +156,7 @@ TEST(RunRatio, WithinARunOnlyItsOwnNoiseCounts) {
   EXPECT_FALSE(ratio.drift);
 }
 
-/// A case of so many passes of 100 frames, of different lengths, on an uneven machine.
+/// A case with `passes` of 100 frames, with different times, on an uneven machine.
 CaseResult runOn(UnevenMachine& machine, double seconds, int passes) {
   CaseResult result;
   double own_noise = 0;
@@ -170,27 +170,27 @@ CaseResult runOn(UnevenMachine& machine, double seconds, int passes) {
   return result;
 }
 
-/// A run of twelve cases of five repetitions at this pace. Beside it each case has luck of its own
-/// with where its memory lies.
+/// A run of twelve cases with five repetitions at this pace. In addition, a random factor of each
+/// case models its memory layout.
 std::vector<CaseResult> runOfTwelve(double pace, unsigned seed, double first_slower_by = 1) {
   UnevenMachine machine(seed, pace, 0, 0.001);
   std::mt19937 random(seed);
-  std::normal_distribution<double> luck(0, 0.005);
+  std::normal_distribution<double> layout(0, 0.005);
   std::vector<CaseResult> cases;
   for (int i = 0; i < 12; ++i) {
     const double slower_by = i == 0 ? first_slower_by : 1;
-    cases.push_back(runOn(machine, 1e-4 * slower_by * std::exp(luck(random)), 5));
+    cases.push_back(runOn(machine, 1e-4 * slower_by * std::exp(layout(random)), 5));
   }
   return cases;
 }
 
-struct Judged {
+struct VerdictCounts {
   int same = 0;
   int claimed = 0;
 };
-/// What 100 pairs of runs say of their first case, on a machine whose pace changes by a tenth.
-Judged judgeFirst(double slower_by, double margin) {
-  Judged judged;
+/// Verdicts of 100 pairs of runs on their first case, on a machine with pace changes of a tenth.
+VerdictCounts judgeFirst(double slower_by, double margin) {
+  VerdictCounts counts;
   for (unsigned seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> pace(0, 0.1);
@@ -198,14 +198,14 @@ Judged judgeFirst(double slower_by, double margin) {
     const std::vector<CaseResult> after =
         runOfTwelve(std::exp(pace(random)), 2 * seed + 1, slower_by);
     const Verdict verdict = verdictOn(ratiosOf(before, after).front().ratio.ci95, margin);
-    judged.same += verdict == Verdict::same ? 1 : 0;
-    judged.claimed += verdict == Verdict::slower || verdict == Verdict::faster ? 1 : 0;
+    counts.same += verdict == Verdict::same ? 1 : 0;
+    counts.claimed += verdict == Verdict::slower || verdict == Verdict::faster ? 1 : 0;
   }
-  return judged;
+  return counts;
 }
 
 TEST(RunRatio, DecidesWhatTwelveCasesOfTwoRunsAllow) {
-  const Judged alike = judgeFirst(1, 0.05);
+  const VerdictCounts alike = judgeFirst(1, 0.05);
   EXPECT_GE(alike.same, 85);
   EXPECT_LE(alike.claimed, 5);
   EXPECT_LE(judgeFirst(1, 0).claimed, 5) << "of intervals without 1";
@@ -232,7 +232,7 @@ TEST(RunRatio, OneCaseAloneClaimsNoDifferenceWhereThereIsNone) {
   }
 }
 
-// Two runs of one case do not show how much runs differ on this machine.
+// Two runs of a case do not show the variance between runs on this machine.
 TEST(RunRatio, FindsADifferenceOfTenPercentWithFiveBaselines) {
   constexpr int kComparisons = 100;
   int found = 0;
@@ -241,14 +241,14 @@ TEST(RunRatio, FindsADifferenceOfTenPercentWithFiveBaselines) {
     std::mt19937 random(seed);
     std::normal_distribution<double> pace(0, 0.005);
     unsigned number = 10 * seed;
-    const auto run = [&](double seconds) {
+    const auto run_case = [&](double seconds) {
       UnevenMachine machine(number++, std::exp(pace(random)), 0.0003);
       return runOn(machine, seconds, 10);
     };
     std::vector<CaseResult> baselines;
-    for (int i = 0; i < 5; ++i) baselines.push_back(run(1e-4));
-    found += ratioOf(baselines, run(1.1e-4))->ratio.ci95.low > 1 ? 1 : 0;
-    const Interval same = ratioOf(baselines, run(1e-4))->ratio.ci95;
+    for (int i = 0; i < 5; ++i) baselines.push_back(run_case(1e-4));
+    found += ratioOf(baselines, run_case(1.1e-4))->ratio.ci95.low > 1 ? 1 : 0;
+    const Interval same = ratioOf(baselines, run_case(1e-4))->ratio.ci95;
     claimed += same.low > 1 || same.high < 1 ? 1 : 0;
   }
   EXPECT_GE(found, kComparisons * 9 / 10);
@@ -256,14 +256,14 @@ TEST(RunRatio, FindsADifferenceOfTenPercentWithFiveBaselines) {
 }
 
 TEST(RunRatio, ThreeBaselinesTellHowMuchRunsDiffer) {
-  const CaseResult one = constant(1);
-  const CaseResult two = constant(1.1);
-  const CaseResult three = constant(0.9);
+  const CaseResult baseline = constant(1);
+  const CaseResult slower = constant(1.1);
+  const CaseResult faster = constant(0.9);
   const CaseResult judged = constant(1.1);
-  EXPECT_LT(ratioOf({one, two, three}, judged)->ratio.ci95.low, 1);
+  EXPECT_LT(ratioOf({baseline, slower, faster}, judged)->ratio.ci95.low, 1);
   const CaseResult alike = constant(1.0001);
-  EXPECT_LT(ratioOf(one, judged).ratio.ci95.low, 1.03) << "nobody knows";
-  EXPECT_GT(ratioOf({one, alike, one}, judged)->ratio.ci95.low, 1.09);
+  EXPECT_LT(ratioOf(baseline, judged).ratio.ci95.low, 1.03) << "unknown with a single baseline";
+  EXPECT_GT(ratioOf({baseline, alike, baseline}, judged)->ratio.ci95.low, 1.09);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The runner, with broad phases that are wrong or slow or fail on purpose: what it says of each,
-// and what it keeps.
+// The runner, with broad phases that are wrong, slow or fail on purpose: statuses, reasons and
+// stored results.
 
 #include "broadmark/harness/runner.h"
 
@@ -38,7 +38,7 @@ TEST(Runner, ARightAnswerIsOk) {
   }
 }
 
-/// A way to be wrong in one frame, and what is to be said of it.
+/// A fault in a single frame, and the expected report.
 struct Fault {
   const char* name;
   std::function<void(std::vector<Pair>&)> spoil;
@@ -113,7 +113,7 @@ TEST_P(FaultyAnswer, IsAMismatchWithTheFrameAndThePair) {
     EXPECT_EQ(result.differences[0].repetition, 1);
     EXPECT_THAT(fault.listed(result.differences[0]), ElementsAre(fault.pair));
     EXPECT_EQ(result.repetitions.at(0).frames.size(), kChainFrames)
-        << "times are kept, with the status";
+        << "times are stored, with the status";
   }
 }
 
@@ -142,13 +142,13 @@ TEST(Runner, EveryWrongFrameIsListedAndTheFirstIsTheReason) {
 TEST(Runner, ACancelledRepetitionIsDropped) {
   ChainSource source;
   Oracle oracle;
-  CaseRun run(caseOf());
-  CaseResult result = beginCase(run.description(), {.scene = source.scene()});
-  ASSERT_TRUE(runRepetition(result, run, source, oracle));
+  CaseRun case_run(caseOf());
+  CaseResult result = beginCase(case_run.description(), {.scene = source.scene()});
+  ASSERT_TRUE(runRepetition(result, case_run, source, oracle));
 
   int asked = 0;
   const RunHooks hooks = {.cancelled = [&] { return ++asked > 2; }, .progress = {}};
-  EXPECT_FALSE(runRepetition(result, run, source, oracle, hooks));
+  EXPECT_FALSE(runRepetition(result, case_run, source, oracle, hooks));
   EXPECT_EQ(asked, 3);
   EXPECT_EQ(result.repetitions.size(), 1U);
   EXPECT_EQ(result.status, Status::ok);
@@ -157,11 +157,11 @@ TEST(Runner, ACancelledRepetitionIsDropped) {
 TEST(Runner, AWarmUpIsCheckedButNotRecorded) {
   ChainSource source;
   Oracle oracle;
-  CaseRun run(caseOf());
-  CaseResult result = beginCase(run.description(), {.scene = source.scene()});
-  EXPECT_TRUE(runRepetition(result, run, source, oracle, {}, false));
+  CaseRun case_run(caseOf());
+  CaseResult result = beginCase(case_run.description(), {.scene = source.scene()});
+  EXPECT_TRUE(runRepetition(result, case_run, source, oracle, {}, false));
   EXPECT_TRUE(result.repetitions.empty());
-  EXPECT_TRUE(runRepetition(result, run, source, oracle, {}));
+  EXPECT_TRUE(runRepetition(result, case_run, source, oracle, {}));
   EXPECT_EQ(result.repetitions.size(), 1U);
   EXPECT_EQ(result.pairs_mean, 3);
 
@@ -186,7 +186,7 @@ TEST(Runner, WrongPairsOfAFrameCountOnceHoweverOftenItIsRun) {
   EXPECT_LE(missed, kChainFrames);
 }
 
-/// Two bodies that do not touch: body 0 moves in every frame but the last, body 1 in frame 2 only.
+/// Two separate bodies: body 0 moves in every frame but the last, body 1 in frame 2 only.
 class TwoBodies final : public IndexedFrames {
  public:
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
@@ -229,40 +229,40 @@ TEST(Runner, BodiesThatArePresentAreCountedWhereSomeMayBeAbsent) {
 TEST(Runner, FramesComeInOrderAndEveryRepetitionIsAFreshInstance) {
   std::vector<std::uint32_t> frames;
   int initialised = 0;
-  CaseRun run(caseOf({.on_initialize = [&] { ++initialised; },
-                      .on_update = [&](std::uint32_t frame) { frames.push_back(frame); }}));
-  std::vector<std::uint32_t> told;
+  CaseRun case_run(caseOf({.on_initialize = [&] { ++initialised; },
+                           .on_update = [&](std::uint32_t frame) { frames.push_back(frame); }}));
+  std::vector<std::uint32_t> reported;
   const RunHooks hooks = {.cancelled = {},
-                          .progress = [&](std::uint32_t frame) { told.push_back(frame); }};
+                          .progress = [&](std::uint32_t frame) { reported.push_back(frame); }};
   ChainSource source;
   Oracle oracle;
-  CaseResult result = beginCase(run.description(), {.scene = source.scene()});
-  for (int pass = 0; pass < 2; ++pass) runRepetition(result, run, source, oracle, hooks);
+  CaseResult result = beginCase(case_run.description(), {.scene = source.scene()});
+  for (int pass = 0; pass < 2; ++pass) runRepetition(result, case_run, source, oracle, hooks);
   EXPECT_EQ(initialised, 2);
   EXPECT_EQ(frames, (std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 1, 2, 3, 4, 5, 6}));
-  EXPECT_EQ(told, frames);
+  EXPECT_EQ(reported, frames);
 }
 
 TEST(Runner, NothingButTheAlgorithmIsTimed) {
   using Clock = std::chrono::steady_clock;
-  std::vector<Clock::time_point> asked;  // when the last question before a frame was answered
-  std::vector<Clock::time_point> told;   // when a frame had been run
+  std::vector<Clock::time_point> asked;     // end of the last cancel query before a frame
+  std::vector<Clock::time_point> reported;  // progress report after a frame
   const RunHooks hooks = {.cancelled =
                               [&] {
-                                asked.resize(told.size() + 1);
+                                asked.resize(reported.size() + 1);
                                 asked.back() = Clock::now();
                                 return false;
                               },
-                          .progress = [&](std::uint32_t) { told.push_back(Clock::now()); }};
+                          .progress = [&](std::uint32_t) { reported.push_back(Clock::now()); }};
   ChainSource source;
   Oracle oracle;
-  CaseRun run(caseOf());
-  CaseResult result = beginCase(run.description(), {.scene = source.scene()});
-  runRepetition(result, run, source, oracle, hooks);
-  ASSERT_EQ(told.size(), kChainFrames);
-  for (std::size_t frame = 0; frame < told.size(); ++frame) {
+  CaseRun case_run(caseOf());
+  CaseResult result = beginCase(case_run.description(), {.scene = source.scene()});
+  runRepetition(result, case_run, source, oracle, hooks);
+  ASSERT_EQ(reported.size(), kChainFrames);
+  for (std::size_t frame = 0; frame < reported.size(); ++frame) {
     const std::int64_t total = result.repetitions.at(0).frames.at(frame)[Phase::total];
-    EXPECT_LE(std::chrono::nanoseconds(total), told[frame] - asked[frame]);
+    EXPECT_LE(std::chrono::nanoseconds(total), reported[frame] - asked[frame]);
   }
 }
 
@@ -283,26 +283,26 @@ TEST(Runner, SceneWithoutFramesOrBodies) {
 }
 
 TEST(Runner, CaseNamesAndIds) {
-  Case run = caseOf();
-  run.threads = 4;
-  run.isa = Isa::avx2;
-  EXPECT_EQ(caseName(run), "spoilt");
-  run.algorithm.traits.vectorised = true;
-  run.algorithm.traits.parallel = true;
-  run.parameters = {{"cells", "3"}};
-  EXPECT_EQ(caseName(run), "spoilt/avx2/t4/cells=3");
+  Case test_case = caseOf();
+  test_case.threads = 4;
+  test_case.isa = Isa::avx2;
+  EXPECT_EQ(caseName(test_case), "spoilt");
+  test_case.algorithm.traits.vectorised = true;
+  test_case.algorithm.traits.parallel = true;
+  test_case.parameters = {{"cells", "3"}};
+  EXPECT_EQ(caseName(test_case), "spoilt/avx2/t4/cells=3");
   RecordingReference recording = {.scene = ChainSource().scene()};
-  EXPECT_EQ(caseId(recording, run), "Chain/Cubes/N4/F6/spoilt/avx2/t4/cells=3");
+  EXPECT_EQ(caseId(recording, test_case), "Chain/Cubes/N4/F6/spoilt/avx2/t4/cells=3");
   recording.seed = 7;
-  EXPECT_EQ(caseId(recording, run), "Chain/Cubes/N4/F6/s7/spoilt/avx2/t4/cells=3");
+  EXPECT_EQ(caseId(recording, test_case), "Chain/Cubes/N4/F6/s7/spoilt/avx2/t4/cells=3");
 
-  const CaseResult result = beginCase(run, recording);
-  EXPECT_EQ(result.id, caseId(recording, run));
+  const CaseResult result = beginCase(test_case, recording);
+  EXPECT_EQ(result.id, caseId(recording, test_case));
   EXPECT_EQ(result.threads, 4);
   EXPECT_EQ(result.isa, Isa::avx2);
   EXPECT_EQ(result.parameters, (ParameterValues{{"cells", "3"}}));
-  run.parameters.clear();
-  EXPECT_EQ(beginCase(run, recording).parameters, (ParameterValues{{"cells", "2"}}))
+  test_case.parameters.clear();
+  EXPECT_EQ(beginCase(test_case, recording).parameters, (ParameterValues{{"cells", "2"}}))
       << "defaults included";
 }
 

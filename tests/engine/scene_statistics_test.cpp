@@ -1,4 +1,4 @@
-// Statistics of scenes, on scenes small enough to be worked out by hand.
+// Statistics of scenes, on small scenes with results computed by hand.
 
 #include "broadmark/analysis/scene_statistics.h"
 
@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "broadmark/reference_pairs.h"
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
 
@@ -20,13 +21,13 @@ SceneInfo smallScene(std::uint32_t objects, std::uint32_t frames) {
   return {"Small", "Boxes", objects, frames, {{-5, -5, -5, 0}, {5, 5, 5, 0}}};
 }
 
-/// Of `frame`, `before` being the boxes of the frame before it.
+/// Statistics of `frame`; `before` has the boxes of the previous frame.
 FrameStatistics statisticsOf(const SceneInfo& scene, const Frame& frame,
                              std::span<const Aabb> before = {}) {
   return frameStatistics(scene, frame, before, sweptPairs(frame.boxes, scene.filter).size());
 }
 
-/// Edges 1×1×1, 2×1×1 and 4×4×4; the first two touch, the third is alone.
+/// Edges 1×1×1, 2×1×1 and 4×4×4; the first two touch, the third overlaps none.
 std::vector<Aabb> threeBoxes() {
   return {{{0, 0, 0, 0}, {1, 1, 1, 0}},
           {{1, 0, 0, 0}, {3, 1, 1, 0}},
@@ -60,7 +61,7 @@ TEST(FrameStatistics, MovingIsWhatChangedAtAll) {
 }
 
 TEST(FrameStatistics, OutsideGoesByTheCentre) {
-  // Half of it out, its centre on the wall: inside. A little further: outside.
+  // A box with its centre on the wall is inside; slightly further, it is outside.
   std::vector<Aabb> boxes = {{{4, 0, 0, 0}, {6, 1, 1, 0}}, {{0, -6.5F, 0, 0}, {1, -4, 1, 0}}};
   EXPECT_EQ(statisticsOf(smallScene(2, 0), {0, boxes}).outside, 1U);
   boxes[0].max[0] = 6.01F;
@@ -97,18 +98,18 @@ TEST(FrameStatistics, AbsentBodiesCountNowhere) {
   EXPECT_EQ(figures.max_extent, 4);
   EXPECT_FALSE(figures.changes);
 
-  const std::vector<Aabb> nobody(5, kEmptyBox);
-  const FrameStatistics none = statisticsOf(scene, {8, nobody}, boxes);
+  const std::vector<Aabb> absent(5, kEmptyBox);
+  const FrameStatistics none = statisticsOf(scene, {8, absent}, boxes);
   EXPECT_EQ(none.bodies, 0U);
   EXPECT_EQ(none.density, 0);
   EXPECT_EQ(none.max_extent, 0);
   EXPECT_EQ(none.changes->vanished, 3);
-  EXPECT_FALSE(none.moving_share) << "of nobody";
+  EXPECT_FALSE(none.moving_share) << "no bodies";
 }
 
 TEST(FrameStatistics, WhatComesAndGoes) {
   const std::vector<Aabb> some = threeBoxes();
-  // One stays, one moves, one vanishes, two appear, one remains absent.
+  // A body rests, one moves, one vanishes, two appear, one remains absent.
   const std::vector<Aabb> before = {some[0], some[1], some[2], kEmptyBox, kEmptyBox, kEmptyBox};
   const std::vector<Aabb> boxes = {some[0], some[2], kEmptyBox, some[1], some[0], kEmptyBox};
   SceneInfo scene = smallScene(6, 1);
@@ -144,15 +145,15 @@ TEST(RangeStatistics, MeansMediansAndExtremes) {
   const auto statistics = [](std::uint32_t frame, double density, double pairs_per_body,
                              std::optional<double> moving_share, std::uint64_t outside,
                              std::array<double, 3> extents) {
-    FrameStatistics one{.frame = frame, .bodies = 3};
-    one.density = density;
-    one.pairs_per_body = pairs_per_body;
-    one.moving_share = moving_share;
-    one.outside = static_cast<decltype(one.outside)>(outside);
-    one.min_extent = extents[0];
-    one.median_extent = extents[1];
-    one.max_extent = extents[2];
-    return one;
+    FrameStatistics figures{.frame = frame, .bodies = 3};
+    figures.density = density;
+    figures.pairs_per_body = pairs_per_body;
+    figures.moving_share = moving_share;
+    figures.outside = static_cast<decltype(figures.outside)>(outside);
+    figures.min_extent = extents[0];
+    figures.median_extent = extents[1];
+    figures.max_extent = extents[2];
+    return figures;
   };
   const std::vector<FrameStatistics> frames = {statistics(3, 0.1, 1, {}, 0, {2, 3, 4}),
                                                statistics(4, 0.2, 2, 0.5, 7, {1, 2, 8}),
@@ -170,8 +171,8 @@ TEST(RangeStatistics, MeansMediansAndExtremes) {
   EXPECT_THAT(range.sizeRatio(), Optional(DoubleEq(9)));
 }
 
-/// Two unit boxes that touch in the initial pose; in each frame the second moves on by 1, except in
-/// the frames from `rest` on.
+/// Two unit boxes that touch in the initial pose; the second moves by 1 in each frame before frame
+/// `rest`.
 std::unique_ptr<Recording> leavingPair(std::uint32_t frames, std::uint32_t rest) {
   RecordingWriter writer(smallScene(2, frames));
   for (std::uint32_t f = 0; f <= frames; ++f) {
@@ -183,13 +184,13 @@ std::unique_ptr<Recording> leavingPair(std::uint32_t frames, std::uint32_t rest)
 
 TEST(Describe, PartsTheFrames) {
   const auto source = leavingPair(5, 4);
-  std::vector<std::uint32_t> told;
+  std::vector<std::uint32_t> reported;
   const auto description = describe(*source, 2, [&](std::uint32_t frame) {
-    told.push_back(frame);
+    reported.push_back(frame);
     return true;
   });
   ASSERT_TRUE(description);
-  EXPECT_EQ(told, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(reported, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(description->initial.last, 0U);
   EXPECT_DOUBLE_EQ(description->initial.pairs_per_body, 0.5);
   EXPECT_FALSE(description->initial.moving_share);
@@ -219,8 +220,8 @@ TEST(Describe, CanBeStopped) {
   EXPECT_FALSE(describe(*leavingPair(5, 9), 2, [](std::uint32_t frame) { return frame < 3; }));
 }
 
-/// Layers 1 and 3 collide with each other, not with themselves; 4 with itself; all boxes touch.
-/// Body 4 is absent in frame 2.
+/// Layers 1 and 3 collide with each other only, layer 4 with itself; all boxes touch. Body 4 is
+/// absent in frame 2.
 FrameList layeredScene() {
   SceneInfo scene = smallScene(5, 2);
   scene.all_present = false;
@@ -258,9 +259,9 @@ TEST(Describe, LayersWorldsAndTags) {
 
 TEST(Describe, AsJson) {
   const auto source = leavingPair(2, 9);
-  const DescribedRecording one = {"a \xff path", source->hash(), source->scene(),
-                                  *describe(*source, 1)};
-  const auto json = nlohmann::json::parse(formatDescriptions({&one, 1}));
+  const DescribedRecording described = {"a \xff path", source->hash(), source->scene(),
+                                        *describe(*source, 1)};
+  const auto json = nlohmann::json::parse(formatDescriptions({&described, 1}));
   EXPECT_EQ(json.at("schema"), "broadmark-descriptions/1");
   const auto& recording = json.at("recordings").at(0);
   EXPECT_EQ(recording.at("hash"), source->hash());
@@ -270,14 +271,14 @@ TEST(Describe, AsJson) {
   EXPECT_EQ(recording.at("overall").at("moving_share"), 0.5);
   EXPECT_EQ(recording.at("overall").at("last_frame"), 2);
   EXPECT_EQ(recording.at("overall").at("size_ratio"), 1);
-  EXPECT_FALSE(recording.at("overall").contains("bodies")) << "nobody comes or goes";
+  EXPECT_FALSE(recording.at("overall").contains("bodies")) << "all bodies are present";
   EXPECT_FALSE(recording.contains("filter"));
 }
 
 TEST(Describe, ChangingWorldsAsJson) {
   FrameList source = layeredScene();
-  const DescribedRecording one = {"a path", "a hash", source.scene(), *describe(source, 1)};
-  const auto json = nlohmann::json::parse(formatDescriptions({&one, 1}));
+  const DescribedRecording described = {"a path", "a hash", source.scene(), *describe(source, 1)};
+  const auto json = nlohmann::json::parse(formatDescriptions({&described, 1}));
   const auto& recording = json.at("recordings").at(0);
   EXPECT_TRUE(recording.at("initial").at("changed").is_null());
   const auto& overall = recording.at("overall");

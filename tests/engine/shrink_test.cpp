@@ -1,5 +1,4 @@
-// Shrinking failing cases: planted faults are found again in parts that are as small as they can
-// be.
+// Shrinking of failing cases: planted faults are reproduced by minimal parts.
 
 #include "broadmark/fuzz/shrink.h"
 
@@ -22,7 +21,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Brute force whose answer is spoilt, given the boxes and how many frames it has seen.
+/// Brute force with a spoilt answer; `spoil` gets the boxes and the number of frames so far.
 class Spoilt final : public BoxBroadPhase {
  public:
   using Spoil = std::function<void(std::vector<Pair>&, const std::vector<Aabb>&, int seen)>;
@@ -44,10 +43,10 @@ class Spoilt final : public BoxBroadPhase {
 };
 
 Case spoilt(Spoilt::Spoil spoil, float margin = 0) {
-  Case run;
-  run.algorithm.id = "spoilt";
-  run.algorithm.create = [=] { return std::make_unique<Spoilt>(spoil, margin); };
-  return run;
+  Case test_case;
+  test_case.algorithm.id = "spoilt";
+  test_case.algorithm.create = [=] { return std::make_unique<Spoilt>(spoil, margin); };
+  return test_case;
 }
 
 FrameList wandering(std::uint32_t objects, std::uint32_t frames, std::uint64_t seed) {
@@ -62,22 +61,22 @@ void dropFirst(std::vector<Pair>& answer) {
 Case faultyCase(const std::string& id) {
   for (const Algorithm& algorithm : faulty::variants()) {
     if (algorithm.id != id) continue;
-    return {.algorithm = algorithm, .parameters = {{"fat_margin", "0.5"}}};  // often enough
+    return {.algorithm = algorithm, .parameters = {{"fat_margin", "0.5"}}};  // fails often enough
   }
   throw std::logic_error(id);
 }
 
-/// What is wrong in the first frame in which anything is.
-FrameDifference firstDifference(const Case& run, FrameSource& source) {
-  const CaseResult result = runCase(run, source);
+/// The difference of the first wrong frame.
+FrameDifference firstDifference(const Case& test_case, FrameSource& source) {
+  const CaseResult result = runCase(test_case, source);
   EXPECT_EQ(result.status, Status::mismatch) << result.reason;
   return result.differences.empty() ? FrameDifference{.frame = 1} : result.differences.front();
 }
 
-/// What a fresh instance finds wrong in the last frame of a part.
-FrameDifference lastDifference(const Case& run, IndexedFrames& source, const Part& part) {
+/// The difference of a new instance in the last frame of a part.
+FrameDifference lastDifference(const Case& test_case, IndexedFrames& source, const Part& part) {
   SubRecording frames(source, part, "Part");
-  CaseResult result = runCase(run, frames);
+  CaseResult result = runCase(test_case, frames);
   if (result.differences.empty()) return {};
   if (result.differences.back().frame != frames.scene().frames) return {};
   return result.differences.back();
@@ -88,17 +87,17 @@ std::vector<std::uint32_t> without(std::vector<std::uint32_t> items, std::size_t
   return items;
 }
 
-/// What is left of a part without one of its bodies.
+/// A part without one of its bodies.
 Part withoutBody(const Part& part, std::size_t body) {
   Part fewer = part;
   fewer.bodies = without(part.bodies, body);
-  std::vector<std::uint32_t> all(part.bodies.size());
-  std::iota(all.begin(), all.end(), 0U);
-  fewer.filter = part.filter.of(without(all, body));
+  std::vector<std::uint32_t> indices(part.bodies.size());
+  std::iota(indices.begin(), indices.end(), 0U);
+  fewer.filter = part.filter.of(without(indices, body));
   return fewer;
 }
 
-/// The part, each time with one of the absences that are left filled, in either way.
+/// Variants of the part with a single absence filled, by the box before or after it.
 std::vector<Part> withAnAbsenceFilled(IndexedFrames& source, const Part& part) {
   std::vector<Part> filled;
   SubRecording some(source, part, "Part");
@@ -111,12 +110,12 @@ std::vector<Part> withAnAbsenceFilled(IndexedFrames& source, const Part& part) {
       if (!isEmpty(box(begin))) continue;
       std::uint32_t end = begin;
       while (end < last && isEmpty(box(end + 1))) ++end;
-      for (const Aabb& place :
+      for (const Aabb& filling :
            {begin > 0 ? box(begin - 1) : kEmptyBox, end < last ? box(end + 1) : kEmptyBox}) {
-        if (isEmpty(place)) continue;
+        if (isEmpty(filling)) continue;
         filled.push_back(part);
         filled.back().filled.push_back(
-            {part.bodies[body], part.frames[begin], part.frames[end], place});
+            {part.bodies[body], part.frames[begin], part.frames[end], filling});
       }
       begin = end;
     }
@@ -124,7 +123,7 @@ std::vector<Part> withAnAbsenceFilled(IndexedFrames& source, const Part& part) {
   return filled;
 }
 
-/// The part, each time with a filter that is simpler in one way.
+/// Variants of the part with a single simplification of its filter.
 std::vector<Part> withASimplerFilter(const Part& part) {
   std::vector<BodyGroups> groups;
   for (std::uint32_t body = 0; body < part.bodies.size(); ++body) {
@@ -133,9 +132,9 @@ std::vector<Part> withASimplerFilter(const Part& part) {
   const LayerMatrix matrix = part.filter.matrix();
   std::vector<Part> simpler;
   const auto add = [&](const std::vector<BodyGroups>& changed, const LayerMatrix& other) {
-    Part one = part;
-    one.filter = CollisionFilter(changed, other);
-    if (one.filter != part.filter) simpler.push_back(one);
+    Part variant = part;
+    variant.filter = CollisionFilter(changed, other);
+    if (variant.filter != part.filter) simpler.push_back(variant);
   };
   const auto change_all = [&](const auto& change) {
     std::vector<BodyGroups> changed = groups;
@@ -164,18 +163,18 @@ std::vector<Part> withASimplerFilter(const Part& part) {
   return simpler;
 }
 
-/// The part fails in its last frame, and no longer when anything is left out.
-void expectMinimal(const Case& run, IndexedFrames& source, const ShrunkCase& shrunk) {
+/// Expects that the part fails in its last frame, and that no smaller part does.
+void expectMinimal(const Case& test_case, IndexedFrames& source, const ShrunkCase& shrunk) {
   EXPECT_TRUE(shrunk.minimal);
   const Part& part = shrunk.part;
   EXPECT_TRUE(std::ranges::is_sorted(part.bodies));
   EXPECT_TRUE(std::ranges::is_sorted(part.frames));
-  const FrameDifference difference = lastDifference(run, source, part);
+  const FrameDifference difference = lastDifference(test_case, source, part);
   EXPECT_TRUE(difference.isMismatch());
   EXPECT_EQ(difference.missed_pairs, shrunk.difference.missed_pairs);
   EXPECT_EQ(difference.false_pairs, shrunk.difference.false_pairs);
   const auto fails = [&](const Part& fewer) {
-    return lastDifference(run, source, fewer).isMismatch();
+    return lastDifference(test_case, source, fewer).isMismatch();
   };
   for (std::size_t i = 0; i < part.bodies.size(); ++i) {
     EXPECT_FALSE(fails(withoutBody(part, i))) << "without body " << i;
@@ -198,10 +197,10 @@ class PlantedFault : public testing::TestWithParam<std::uint64_t> {
 INSTANTIATE_TEST_SUITE_P(Seeds, PlantedFault, testing::Values(1, 2, 3, 4, 5, 6));
 
 TEST_P(PlantedFault, MissedPairNeedsThreeBodiesAndTwoFrames) {
-  const Case run = faultyCase("faulty");
-  const FrameDifference known = firstDifference(run, scene_);
-  const ShrunkCase shrunk = shrinkCase(run, scene_, known);
-  expectMinimal(run, scene_, shrunk);
+  const Case test_case = faultyCase("faulty");
+  const FrameDifference known = firstDifference(test_case, scene_);
+  const ShrunkCase shrunk = shrinkCase(test_case, scene_, known);
+  expectMinimal(test_case, scene_, shrunk);
   EXPECT_EQ(shrunk.part.bodies.size(), 3U);
   EXPECT_LE(shrunk.part.frames.size(), 3U);  // a pose and two frames
   EXPECT_EQ(shrunk.part.frames.back(), known.frame);
@@ -210,58 +209,59 @@ TEST_P(PlantedFault, MissedPairNeedsThreeBodiesAndTwoFrames) {
 }
 
 TEST_P(PlantedFault, FalsePairNeedsTwoBodies) {
-  const Case run = faultyCase("faulty-extra");
-  const FrameDifference known = firstDifference(run, scene_);
-  const ShrunkCase shrunk = shrinkCase(run, scene_, known);
+  const Case test_case = faultyCase("faulty-extra");
+  const FrameDifference known = firstDifference(test_case, scene_);
+  const ShrunkCase shrunk = shrinkCase(test_case, scene_, known);
   EXPECT_EQ(shrunk.part.bodies.size(), 2U);
   EXPECT_EQ(shrunk.part.frames.size(), 2U);
   EXPECT_EQ(shrunk.difference.false_count, 1U);
   EXPECT_EQ(shrunk.difference.missed_count + shrunk.difference.invalid_count, 0U);
-  expectMinimal(run, scene_, shrunk);
+  expectMinimal(test_case, scene_, shrunk);
 }
 
 TEST_P(PlantedFault, SameInputSameResult) {
-  const Case run = faultyCase("faulty");
-  const FrameDifference known = firstDifference(run, scene_);
-  const ShrunkCase one = shrinkCase(run, scene_, known);
-  const ShrunkCase two = shrinkCase(run, scene_, known);
-  EXPECT_EQ(one.part, two.part);
-  EXPECT_EQ(one.trials, two.trials);
+  const Case test_case = faultyCase("faulty");
+  const FrameDifference known = firstDifference(test_case, scene_);
+  const ShrunkCase first = shrinkCase(test_case, scene_, known);
+  const ShrunkCase second = shrinkCase(test_case, scene_, known);
+  EXPECT_EQ(first.part, second.part);
+  EXPECT_EQ(first.trials, second.trials);
 }
 
 TEST_P(PlantedFault, IsFoundWithoutKnowingThePairAndWithLittleMemory) {
-  const Case run = faultyCase("faulty");
-  const FrameDifference known = firstDifference(run, scene_);
+  const Case test_case = faultyCase("faulty");
+  const FrameDifference known = firstDifference(test_case, scene_);
   const FrameDifference only_frame{.frame = known.frame};
   for (const std::size_t memory : {std::size_t{0}, std::size_t{20'000}, std::size_t{1} << 30}) {
-    const ShrunkCase shrunk = shrinkCase(run, scene_, only_frame, {.memory_bytes = memory});
+    const ShrunkCase shrunk = shrinkCase(test_case, scene_, only_frame, {.memory_bytes = memory});
     EXPECT_EQ(shrunk.part.bodies.size(), 3U);
     EXPECT_LE(shrunk.part.frames.size(), 3U);  // a pose and two frames
-    expectMinimal(run, scene_, shrunk);
+    expectMinimal(test_case, scene_, shrunk);
   }
 }
 
 TEST(Shrink, ParametersCount) {
   FrameList scene = wandering(200, 400, 1);
-  Case run = faultyCase("faulty");
-  run.parameters = {{"fat_margin", "0.3"}};
-  const FrameDifference known = firstDifference(run, scene);
-  const ShrunkCase shrunk = shrinkCase(run, scene, known);
+  Case test_case = faultyCase("faulty");
+  test_case.parameters = {{"fat_margin", "0.3"}};
+  const FrameDifference known = firstDifference(test_case, scene);
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, known);
   EXPECT_EQ(shrunk.part.bodies.size(), 3U);
-  expectMinimal(run, scene, shrunk);
-  run.parameters = {{"fat_margin", "900"}};  // nothing ever moves
-  EXPECT_THAT(inputErrorOf([&] { shrinkCase(run, scene, known); }), HasSubstr("does not fail"));
+  expectMinimal(test_case, scene, shrunk);
+  test_case.parameters = {{"fat_margin", "900"}};  // nothing ever moves
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(test_case, scene, known); }),
+              HasSubstr("does not fail"));
 }
 
 TEST(Shrink, CancelledKeepsTheBestSoFar) {
   FrameList scene = wandering(200, 400, 1);
-  const Case run = faultyCase("faulty");
-  const FrameDifference known = firstDifference(run, scene);
-  const std::uint64_t all = shrinkCase(run, scene, known).trials;
+  const Case test_case = faultyCase("faulty");
+  const FrameDifference known = firstDifference(test_case, scene);
+  const std::uint64_t all = shrinkCase(test_case, scene, known).trials;
   for (const std::uint64_t enough : {std::uint64_t{0}, std::uint64_t{1}, all / 2, all - 1}) {
     std::uint64_t done = 0;
     std::size_t bodies = 200;
-    const ShrunkCase shrunk = shrinkCase(run, scene, known,
+    const ShrunkCase shrunk = shrinkCase(test_case, scene, known,
                                          {.progress =
                                               [&](const ShrinkProgress& now) {
                                                 EXPECT_EQ(now.trials, ++done);
@@ -272,41 +272,41 @@ TEST(Shrink, CancelledKeepsTheBestSoFar) {
     EXPECT_EQ(shrunk.trials, enough);
     EXPECT_FALSE(shrunk.minimal);
     EXPECT_EQ(shrunk.part.bodies.size(), bodies);
-    EXPECT_TRUE(lastDifference(run, scene, shrunk.part).isMismatch());
+    EXPECT_TRUE(lastDifference(test_case, scene, shrunk.part).isMismatch());
   }
 }
 
 TEST(Shrink, FaultsOfManyBodiesKeepThemAll) {
   constexpr std::size_t kNeeded = 37;
-  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+  const Case test_case = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
     if (boxes.size() >= kNeeded) dropFirst(answer);
   });
   FrameList scene = wandering(90, 12, 1);
   for (const std::size_t memory : {std::size_t{1000}, std::size_t{1} << 30}) {
-    const ShrunkCase shrunk = shrinkCase(run, scene, {.frame = 12}, {.memory_bytes = memory});
+    const ShrunkCase shrunk = shrinkCase(test_case, scene, {.frame = 12}, {.memory_bytes = memory});
     EXPECT_EQ(shrunk.part.bodies.size(), kNeeded);
     EXPECT_EQ(shrunk.part.frames.size(), 2U);
-    expectMinimal(run, scene, shrunk);
+    expectMinimal(test_case, scene, shrunk);
   }
 }
 
 TEST(Shrink, FaultsOfLongHistoriesKeepThem) {
-  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>&, int seen) {
+  const Case test_case = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>&, int seen) {
     if (seen == 7) dropFirst(answer);
   });
   FrameList scene = wandering(60, 20, 1);
-  EXPECT_THAT(inputErrorOf([&] { shrinkCase(run, scene, {.frame = 20}); }),
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(test_case, scene, {.frame = 20}); }),
               AllOf(HasSubstr("Wandering"), HasSubstr("spoilt"), HasSubstr("frame 20")));
-  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
   EXPECT_EQ(shrunk.part.bodies.size(), 2U);
   EXPECT_EQ(shrunk.part.frames.size(), 8U);
-  expectMinimal(run, scene, shrunk);
+  expectMinimal(test_case, scene, shrunk);
 }
 
 TEST(Shrink, PairsWithinTheMarginAreNoFault) {
   constexpr float kMargin = 0.2F;
-  // Besides what the margin excuses, the pair of the first and the last body.
-  const Case run = spoilt(
+  // A false pair beyond the margin: of the first and the last body.
+  const Case test_case = spoilt(
       [](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
         const Pair far{0, static_cast<std::uint32_t>(boxes.size() - 1)};
         if (boxes.size() < 4 || std::ranges::count(answer, far) > 0) return;
@@ -314,41 +314,41 @@ TEST(Shrink, PairsWithinTheMarginAreNoFault) {
       },
       kMargin);
   FrameList scene = wandering(80, 5, 1);
-  const FrameDifference known = firstDifference(run, scene);
+  const FrameDifference known = firstDifference(test_case, scene);
   ASSERT_GT(known.allowed_extra_count, 0U);
-  const ShrunkCase shrunk = shrinkCase(run, scene, known);
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, known);
   EXPECT_EQ(shrunk.part.bodies.size(), 4U);
   EXPECT_EQ(shrunk.difference.false_count, 1U);
-  expectMinimal(run, scene, shrunk);
+  expectMinimal(test_case, scene, shrunk);
 }
 
 TEST(Shrink, AnswersThatAreNoPairsAreFaults) {
-  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+  const Case test_case = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
     if (boxes.size() > 2) answer.push_back({2, 2});
   });
   FrameList scene = wandering(30, 3, 1);
-  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
   EXPECT_EQ(shrunk.part.bodies.size(), 3U);
   EXPECT_EQ(shrunk.difference.invalid_count, 1U);
-  expectMinimal(run, scene, shrunk);
+  expectMinimal(test_case, scene, shrunk);
 }
 
 TEST(Shrink, WhatThrowsDoesNotFail) {
-  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+  const Case test_case = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
     if (boxes.size() < 5) throw std::runtime_error("too few");
     dropFirst(answer);
   });
   FrameList scene = wandering(50, 4, 1);
-  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
   EXPECT_EQ(shrunk.part.bodies.size(), 5U);
 }
 
 TEST(Shrink, ManyBodiesTakeFewTrials) {
   const std::uint32_t n = kSanitized ? 5'000 : 20'000;
-  // A sweep that loses the lowest pair of three or more bodies.
-  Case run;
-  run.algorithm.id = "sweep";
-  run.algorithm.create = [] {
+  // A sweep that loses the lowest pair if there are three or more bodies.
+  Case test_case;
+  test_case.algorithm.id = "sweep";
+  test_case.algorithm.create = [] {
     class Sweep final : public BoxBroadPhase {
       void findPairs() override {
         std::vector<Pair> answer = sweptPairs(boxes());
@@ -359,7 +359,7 @@ TEST(Shrink, ManyBodiesTakeFewTrials) {
     return std::make_unique<Sweep>();
   };
   FrameList scene = wandering(n, 6, 1);
-  const ShrunkCase shrunk = shrinkCase(run, scene, {.frame = 6});
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, {.frame = 6});
   EXPECT_EQ(shrunk.part.bodies.size(), 3U);
   EXPECT_EQ(shrunk.part.frames.size(), 2U);
   EXPECT_LT(shrunk.trials, 30U);
@@ -370,7 +370,7 @@ TEST(Shrink, WhatCannotBeShrunk) {
   const Case right = spoilt([](std::vector<Pair>&, const std::vector<Aabb>&, int) {});
   EXPECT_THAT(inputErrorOf([&] { shrinkCase(right, scene, {.frame = 2}); }),
               HasSubstr("does not fail in frame 2"));
-  // Whatever pair is said to be missed.
+  // Also with missed pairs in the difference.
   const FrameDifference wrong{.frame = 2, .missed_count = 1, .missed_pairs = {{3, 99}, {4, 5}}};
   EXPECT_THAT(inputErrorOf([&] { shrinkCase(right, scene, wrong); }),
               HasSubstr("does not fail in frame 2"));
@@ -387,14 +387,14 @@ TEST(Shrink, WhatCannotBeShrunk) {
   EXPECT_THAT(inputErrorOf([&] { shrinkCase(bad, scene, {.frame = 2}); }), HasSubstr("nonsense"));
 }
 
-/// Of a changing world: tests all pairs, but spoils the answer, knowing the boxes of the frame
-/// before.
+/// Brute force in changing worlds with a spoilt answer; `spoil` also gets the boxes of the previous
+/// frame.
 class SpoiltInChangingWorlds final : public BoxBroadPhase {
  public:
   struct Seen {
     const SceneInfo& scene;
     std::span<const Aabb> boxes;
-    std::span<const Aabb> before;  ///< the same in the first frame
+    std::span<const Aabb> before;  ///< equal to `boxes` in the first frame
   };
   using Spoil = std::function<void(std::vector<Pair>&, const Seen&)>;
 
@@ -420,14 +420,14 @@ class SpoiltInChangingWorlds final : public BoxBroadPhase {
 };
 
 Case spoiltInChangingWorlds(SpoiltInChangingWorlds::Spoil spoil) {
-  Case run;
-  run.algorithm.id = "spoilt";
-  run.algorithm.traits.changing_worlds = ChangingWorlds::native;
-  run.algorithm.create = [=] { return std::make_unique<SpoiltInChangingWorlds>(spoil); };
-  return run;
+  Case test_case;
+  test_case.algorithm.id = "spoilt";
+  test_case.algorithm.traits.changing_worlds = ChangingWorlds::native;
+  test_case.algorithm.create = [=] { return std::make_unique<SpoiltInChangingWorlds>(spoil); };
+  return test_case;
 }
 
-/// Somebody has come or gone since the frame before.
+/// Whether a body has appeared or vanished since the previous frame.
 bool hasChangedPopulation(const SpoiltInChangingWorlds::Seen& seen, bool appeared) {
   for (std::size_t body = 0; body < seen.boxes.size(); ++body) {
     const Aabb& empty = appeared ? seen.before[body] : seen.boxes[body];
@@ -437,7 +437,7 @@ bool hasChangedPopulation(const SpoiltInChangingWorlds::Seen& seen, bool appeare
   return false;
 }
 
-/// Bodies that come and go, in a filter with layers, worlds and tags.
+/// Bodies that appear and vanish, with layers, worlds and tags.
 FrameList changingScene() {
   WanderingBoxes live(60, 12, 1);
   return changing(live, presences::random, filters(60).back().filter);
@@ -456,53 +456,53 @@ TEST(ShrinkInChangingWorlds, AFaultThatNeedsOneRemoval) {
   FrameList scene = changingScene();
   for (const bool appeared : {false, true}) {
     SCOPED_TRACE(appeared);
-    const Case run = spoiltInChangingWorlds([=](std::vector<Pair>& answer, const auto& seen) {
+    const Case test_case = spoiltInChangingWorlds([=](std::vector<Pair>& answer, const auto& seen) {
       if (hasChangedPopulation(seen, appeared)) dropFirst(answer);
     });
-    const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
-    EXPECT_LE(shrunk.part.bodies.size(), 3U);  // a pair, and one who comes or goes
+    const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
+    EXPECT_LE(shrunk.part.bodies.size(), 3U);  // a pair, and a body that appears or vanishes
     EXPECT_EQ(shrunk.part.frames.size(), 2U);
     EXPECT_EQ(absencesIn(scene, shrunk.part), 1U);
     EXPECT_FALSE(shrunk.part.all_present);
     EXPECT_TRUE(shrunk.part.filter.wantsAll());
-    expectMinimal(run, scene, shrunk);
+    expectMinimal(test_case, scene, shrunk);
   }
 }
 
 TEST(ShrinkInChangingWorlds, AFaultThatNeedsNoRemovalKeepsNone) {
-  const Case run =
+  const Case test_case =
       spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto&) { dropFirst(answer); });
   FrameList scene = changingScene();
-  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
   EXPECT_EQ(shrunk.part.bodies.size(), 2U);
   EXPECT_EQ(shrunk.part.frames.size(), 2U);
   EXPECT_EQ(absencesIn(scene, shrunk.part), 0U);
   EXPECT_TRUE(shrunk.part.all_present);
   EXPECT_TRUE(shrunk.part.filter.wantsAll());
-  expectMinimal(run, scene, shrunk);
+  expectMinimal(test_case, scene, shrunk);
 }
 
 TEST(ShrinkInChangingWorlds, ThatSomebodyMayBeAbsentIsEnough) {
-  const Case run = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
+  const Case test_case = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
     if (!seen.scene.all_present) dropFirst(answer);
   });
   FrameList scene = changingScene();
-  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
   EXPECT_EQ(shrunk.part.bodies.size(), 2U);
   EXPECT_EQ(absencesIn(scene, shrunk.part), 0U);
   EXPECT_FALSE(shrunk.part.all_present);
-  expectMinimal(run, scene, shrunk);
+  expectMinimal(test_case, scene, shrunk);
 }
 
 TEST(ShrinkInChangingWorlds, AFaultThatNeedsTwoLayers) {
-  const Case run = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
+  const Case test_case = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
     std::erase_if(answer, [&](const Pair pair) {
       const CollisionFilter& filter = seen.scene.filter;
       return filter.groupsOf(pair.a).layer != filter.groupsOf(pair.b).layer;
     });
   });
   FrameList scene = changingScene();
-  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
   EXPECT_EQ(shrunk.part.bodies.size(), 2U);
   EXPECT_TRUE(shrunk.part.all_present);
   const CollisionFilter& filter = shrunk.part.filter;
@@ -514,47 +514,47 @@ TEST(ShrinkInChangingWorlds, AFaultThatNeedsTwoLayers) {
   EXPECT_EQ(filter.matrix(), both);
   EXPECT_TRUE(filter.worlds().empty());
   EXPECT_TRUE(filter.tags().empty());
-  expectMinimal(run, scene, shrunk);
+  expectMinimal(test_case, scene, shrunk);
 }
 
-/// Reports what is not wanted for one reason, the only one that is left then.
+/// Reports pairs that only one criterion of the filter excludes; the shrunk filter has only that.
 TEST(ShrinkInChangingWorlds, FaultsThatNeedLayersApartWorldsOrTags) {
-  enum class Why { layers, worlds, tags };
-  for (const Why why : {Why::layers, Why::worlds, Why::tags}) {
-    SCOPED_TRACE(static_cast<int>(why));
-    const Case run = spoiltInChangingWorlds([=](std::vector<Pair>& answer, const auto& seen) {
+  enum class Criterion { layers, worlds, tags };
+  for (const Criterion criterion : {Criterion::layers, Criterion::worlds, Criterion::tags}) {
+    SCOPED_TRACE(static_cast<int>(criterion));
+    const Case test_case = spoiltInChangingWorlds([=](std::vector<Pair>& answer, const auto& seen) {
       std::vector<BodyGroups> groups;
       for (std::uint32_t body = 0; body < seen.boxes.size(); ++body) {
         groups.push_back(seen.scene.filter.groupsOf(body));
-        if (why == Why::worlds) groups.back().world = 0;
-        if (why == Why::tags) groups.back().tags = BodyGroups::kNoTags;
+        if (criterion == Criterion::worlds) groups.back().world = 0;
+        if (criterion == Criterion::tags) groups.back().tags = BodyGroups::kNoTags;
       }
       const LayerMatrix matrix =
-          why == Why::layers ? LayerMatrix::all() : seen.scene.filter.matrix();
+          criterion == Criterion::layers ? LayerMatrix::all() : seen.scene.filter.matrix();
       answer = bruteForcePairs(seen.boxes, CollisionFilter(groups, matrix));
     });
     FrameList scene = changingScene();
-    const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+    const ShrunkCase shrunk = shrinkCase(test_case, scene, firstDifference(test_case, scene));
     const CollisionFilter& filter = shrunk.part.filter;
     EXPECT_EQ(shrunk.part.bodies.size(), 2U);
     EXPECT_TRUE(shrunk.part.all_present);
     EXPECT_FALSE(filter.wanted(0, 1));
-    EXPECT_EQ(!filter.worlds().empty(), why == Why::worlds);
-    EXPECT_EQ(!filter.tags().empty(), why == Why::tags);
-    expectMinimal(run, scene, shrunk);
+    EXPECT_EQ(!filter.worlds().empty(), criterion == Criterion::worlds);
+    EXPECT_EQ(!filter.tags().empty(), criterion == Criterion::tags);
+    expectMinimal(test_case, scene, shrunk);
   }
 }
 
 TEST(ShrinkInChangingWorlds, IsFoundWithoutKnowingThePairAndWithLittleMemory) {
-  const Case run = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
+  const Case test_case = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
     if (hasChangedPopulation(seen, false)) dropFirst(answer);
   });
   FrameList scene = changingScene();
-  const FrameDifference only_frame{.frame = firstDifference(run, scene).frame};
+  const FrameDifference only_frame{.frame = firstDifference(test_case, scene).frame};
   for (const std::size_t memory : {std::size_t{0}, std::size_t{2'000}, std::size_t{1} << 30}) {
-    const ShrunkCase shrunk = shrinkCase(run, scene, only_frame, {.memory_bytes = memory});
+    const ShrunkCase shrunk = shrinkCase(test_case, scene, only_frame, {.memory_bytes = memory});
     EXPECT_EQ(absencesIn(scene, shrunk.part), 1U);
-    expectMinimal(run, scene, shrunk);
+    expectMinimal(test_case, scene, shrunk);
   }
 }
 
@@ -578,8 +578,8 @@ TEST(Shrink, PartsAreWrittenAsRecordings) {
 TEST(Shrink, NamesOfPartsFitIntoAHeader) {
   EXPECT_EQ(partName({.name = "FreeFall"}), "FreeFall case");
   EXPECT_EQ(partName({.name = "FreeFall case"}), "FreeFall case");
-  const std::string shortened = std::string(kLongestName - 5, 'x').append(" case");
-  EXPECT_EQ(partName({.name = std::string(kLongestName, 'x')}), shortened);
+  const std::string shortened = std::string(kMaxNameLength - 5, 'x').append(" case");
+  EXPECT_EQ(partName({.name = std::string(kMaxNameLength, 'x')}), shortened);
 }
 
 }  // namespace

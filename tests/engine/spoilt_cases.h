@@ -1,4 +1,4 @@
-// Cases that are wrong, slow or failing on purpose, and a scene for them.
+// Cases that are wrong, slow or fail on purpose, and a scene for them.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ class ChainSource final : public IndexedFrames {
   std::vector<Aabb> boxes_;
 };
 
-/// Everything that a run may go through, to be replaced one by one.
+/// Callbacks and properties of a test algorithm; each can be replaced.
 struct Behaviour {
   std::function<void()> on_initialize = [] {};
   std::function<void(std::uint32_t frame)> on_update = [](std::uint32_t) {};
@@ -45,10 +45,10 @@ struct Behaviour {
       [](std::uint32_t, std::vector<Pair>&) {};
   float margin = 0;
   AlgorithmTraits traits = {};
-  std::function<void()> on_destroy = [] {};  // of an instance that was initialised
+  std::function<void()> on_destroy = [] {};  // only after initialisation
 };
 
-/// Brute force, spoilt by a behaviour.
+/// Brute force with a given behaviour.
 class Spoilt final : public BoxBroadPhase {
  public:
   explicit Spoilt(Behaviour behaviour) : behaviour_(std::move(behaviour)) {}
@@ -88,12 +88,12 @@ class Spoilt final : public BoxBroadPhase {
 };
 
 inline Case caseOf(const Behaviour& behaviour = {}) {
-  Case run;
-  run.algorithm.id = "spoilt";
-  run.algorithm.family = "Tests";
-  run.algorithm.traits = behaviour.traits;
-  run.algorithm.create = [behaviour] { return std::make_unique<Spoilt>(behaviour); };
-  return run;
+  Case test_case;
+  test_case.algorithm.id = "spoilt";
+  test_case.algorithm.family = "Tests";
+  test_case.algorithm.traits = behaviour.traits;
+  test_case.algorithm.create = [behaviour] { return std::make_unique<Spoilt>(behaviour); };
+  return test_case;
 }
 
 /// Spoils the answer of one frame.
@@ -103,9 +103,10 @@ inline Case spoilingAnswer(std::function<void(std::vector<Pair>&)> spoil) {
   }});
 }
 
-inline CaseResult runOnChain(const Case& run, const RunPolicy& policy = {}, int repetitions = 1) {
+inline CaseResult runOnChain(const Case& test_case, const RunPolicy& policy = {},
+                             int repetitions = 1) {
   ChainSource source;
-  return runCase(run, source, policy, repetitions);
+  return runCase(test_case, source, policy, repetitions);
 }
 
 }  // namespace broadmark::tests

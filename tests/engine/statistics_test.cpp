@@ -1,5 +1,5 @@
-// Statistics against values worked out elsewhere: by hand where the sum is shown, otherwise from
-// tables of Student's t (as in R's qt(0.975, df)).
+// Statistics against known values: computed by hand where the sum is shown, otherwise from tables
+// of Student's t (as in R's qt(0.975, df)).
 
 #include "broadmark/statistics/statistics.h"
 
@@ -26,17 +26,17 @@ TEST(Statistics, NothingAndASingleValue) {
   EXPECT_EQ(mean({}), 0);
   EXPECT_EQ(standardDeviation({}), 0);
   EXPECT_EQ(quantile({}, 0.5), 0);
-  const Values one = {3};
-  EXPECT_EQ(mean(one), 3);
-  EXPECT_EQ(standardDeviation(one), 0);
+  const Values single = {3};
+  EXPECT_EQ(mean(single), 3);
+  EXPECT_EQ(standardDeviation(single), 0);
   EXPECT_FALSE(confidence95({}).has_value());
-  EXPECT_FALSE(confidence95(one).has_value());
+  EXPECT_FALSE(confidence95(single).has_value());
 }
 
-// Type 7: rank q (n - 1), linear in between.
+// Type 7: rank q (n - 1), with linear interpolation.
 TEST(Statistics, Quantiles) {
-  const Values one = {3};
-  for (const double q : {0.0, 0.3, 0.5, 0.99, 1.0}) EXPECT_EQ(quantile(one, q), 3);
+  const Values single = {3};
+  for (const double q : {0.0, 0.3, 0.5, 0.99, 1.0}) EXPECT_EQ(quantile(single, q), 3);
 
   const Values two = {20, 10};
   EXPECT_DOUBLE_EQ(quantile(two, 0), 10);
@@ -61,7 +61,7 @@ TEST(Statistics, StudentQuantiles) {
   for (const auto& [degrees, t] : known) EXPECT_NEAR(studentT975(degrees), t, 1e-3) << degrees;
 }
 
-// Welch's degrees are no whole numbers. By integrating the density numerically.
+// Welch's degrees of freedom are no integers. Values by numerical integration of the density.
 TEST(Statistics, StudentQuantilesInBetween) {
   for (const auto& [degrees, t] : std::map<double, double>{
            {1.25, 8.02795}, {1.5, 6.01666}, {2.5, 3.57465}, {3.5, 2.94009}, {4.5, 2.65891}}) {
@@ -120,7 +120,7 @@ TEST(Summary, OfNothing) {
   EXPECT_FALSE(summary.ci95.has_value());
 }
 
-// A repetition that timed out before its first frame has no mean, least of all 0.
+// A repetition that timed out before its first frame has no mean (not 0).
 TEST(Summary, RepetitionsWithoutFramesDoNotCount) {
   const Summary summary = summariseAll({{2, 4}, {}});
   EXPECT_DOUBLE_EQ(summary.seconds_per_frame, 3);
@@ -137,20 +137,20 @@ TEST(Summary, OutliersAreCountedAndKept) {
   EXPECT_DOUBLE_EQ(summary.seconds_per_frame, 55.5 / 9);
 }
 
-/// A series in which each value is `likeness` times the one before, plus noise.
-Values seriesOf(std::size_t count, double likeness, unsigned seed) {
+/// A series in which each value is `correlation` times the previous value, plus noise.
+Values seriesOf(std::size_t count, double correlation, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise;
   Values series;
   double value = 0;
   for (std::size_t i = 0; i < count; ++i)
-    series.push_back(value = likeness * value + noise(random));
+    series.push_back(value = correlation * value + noise(random));
   return series;
 }
 
 TEST(MedianOfSeries, OfOneValueIsThatValue) {
-  const Values one = {3};
-  const Estimate estimate = medianOfSeries(one);
+  const Values single = {3};
+  const Estimate estimate = medianOfSeries(single);
   EXPECT_EQ(estimate.value, 3);
   EXPECT_EQ(estimate.ci95.low, 3);
   EXPECT_EQ(estimate.ci95.high, 3);
@@ -158,21 +158,21 @@ TEST(MedianOfSeries, OfOneValueIsThatValue) {
 
 TEST(MedianOfSeries, HoldsTheTrueMedianAsOftenAsItSays) {
   constexpr int kSeries = 200;
-  for (const double likeness : {0.0, 0.6}) {
+  for (const double correlation : {0.0, 0.6}) {
     int misses = 0;
     for (unsigned seed = 0; seed < kSeries; ++seed) {
-      const Interval interval = medianOfSeries(seriesOf(300, likeness, seed)).ci95;
+      const Interval interval = medianOfSeries(seriesOf(300, correlation, seed)).ci95;
       misses += interval.low > 0 || interval.high < 0 ? 1 : 0;
     }
-    // 5 %, and three standard errors of that share.
-    EXPECT_LE(misses, kSeries / 10) << likeness;
+    // 5 %, plus three standard errors of that share.
+    EXPECT_LE(misses, kSeries / 10) << correlation;
   }
 }
 
 TEST(MedianOfSeries, IsLessSureWhereNeighboursAreAlike) {
-  const auto width = [](double likeness) {
-    const Interval interval = medianOfSeries(seriesOf(1000, likeness, 5)).ci95;
-    return (interval.high - interval.low) * (1 - likeness);  // of what does not repeat
+  const auto width = [](double correlation) {
+    const Interval interval = medianOfSeries(seriesOf(1000, correlation, 5)).ci95;
+    return (interval.high - interval.low) * (1 - correlation);  // relative to independent values
   };
   EXPECT_GT(width(0.9), 0.7 * width(0));
 }

@@ -1,4 +1,4 @@
-// Parts of recordings: the right boxes, from any kind of source, in any order.
+// Parts of recordings: correct boxes, from any kind of source, in any order.
 
 #include "broadmark/recordings/sub_recording.h"
 
@@ -42,7 +42,7 @@ TEST(IndexedFrames, GiveTheirFramesInAnyOrder) {
   EXPECT_THAT(inputErrorOf([&] { list.at(10); }), HasSubstr("no frame 10"));
   EXPECT_THAT(inputErrorOf([&] { recording->at(10); }), HasSubstr("no frame 10"));
   EXPECT_EQ(copyOf(list.at(1)), all[1]);
-  EXPECT_EQ(copyOf(*list.next()), all[2]) << "next() goes on from there";
+  EXPECT_EQ(copyOf(*list.next()), all[2]) << "next() continues after at()";
 }
 
 TEST(SubRecording, IsTheSelectedPart) {
@@ -86,13 +86,13 @@ TEST(SubRecording, FillsAbsencesAndKeepsTheFilterOfItsBodies) {
   EXPECT_FALSE(some.all_present);
   EXPECT_EQ(some.filter.groupsOf(1), groups[2]);
   EXPECT_EQ(some.filter.matrix(), whole.scene().filter.matrix());
-  const Aabb place = inputs::boxAt({7, 7, 7}, {1, 1, 1});
-  some.filled = {{2, 2, 3, place}};
+  const Aabb filling = inputs::boxAt({7, 7, 7}, {1, 1, 1});
+  some.filled = {{2, 2, 3, filling}};
   SubRecording part(whole, some, "Part");
   EXPECT_FALSE(part.scene().all_present);
   EXPECT_EQ(part.scene().filter, some.filter);
   EXPECT_TRUE(isEmpty(part.at(0).boxes[1]));
-  EXPECT_EQ(part.at(1).boxes[1], place);
+  EXPECT_EQ(part.at(1).boxes[1], filling);
   EXPECT_EQ(part.at(2).boxes[1], whole.at(4).boxes[2]);
   EXPECT_EQ(part.at(1).boxes[2], whole.at(2).boxes[3]);
 }

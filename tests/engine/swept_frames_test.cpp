@@ -1,4 +1,4 @@
-// Swept boxes: exact bounds, absent bodies, what changed, in any order of frames.
+// Swept boxes: exact bounds, absent bodies, changed bodies, in any order of frames.
 
 #include "broadmark/recordings/swept_frames.h"
 
@@ -18,21 +18,21 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 
-/// Frames in memory, which may know what changed.
+/// Frames in memory, with or without a list of changed bodies.
 class MadeFrames final : public IndexedFrames {
  public:
-  MadeFrames(std::vector<Boxes> frames, bool knows_changed) : frames_(std::move(frames)) {
+  MadeFrames(std::vector<Boxes> frames, bool lists_changed) : frames_(std::move(frames)) {
     scene_.name = "Made";
     scene_.objects = static_cast<std::uint32_t>(frames_.front().size());
     scene_.frames = static_cast<std::uint32_t>(frames_.size() - 1);
     scene_.all_present = false;
-    if (knows_changed) changed_.emplace();
+    if (lists_changed) changed_.emplace();
   }
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
 
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
-    // In a place of its own: a frame is valid until the next call only.
+    // A copy: a frame is valid until the next call only.
     now_ = frames_[index];
     if (!changed_) return now_;
     changed_->clear();
@@ -51,11 +51,11 @@ class MadeFrames final : public IndexedFrames {
   std::optional<std::vector<std::uint32_t>> changed_;
 };
 
-SweptFrames swept(const std::vector<Boxes>& frames, bool knows_changed = true) {
-  return SweptFrames(std::make_unique<MadeFrames>(frames, knows_changed));
+SweptFrames swept(const std::vector<Boxes>& frames, bool lists_changed = true) {
+  return SweptFrames(std::make_unique<MadeFrames>(frames, lists_changed));
 }
 
-/// A box of size 1 from here on.
+/// A unit box with minimum x.
 Aabb at(float x) { return {{x, 0, 0, 0}, {x + 1, 1, 1, 0}}; }
 
 /// From `low` to `high` on x, rounded outward.
@@ -66,7 +66,7 @@ Aabb around(float low, float high) {
   return {{down(low), down(0), down(0), 0}, {up(high), up(1), up(1), 0}};
 }
 
-/// Bodies that move, rest, come and go.
+/// Bodies that move, rest, appear and vanish.
 std::vector<Boxes> restlessFrames(std::uint32_t n, std::uint32_t frames) {
   std::vector<Boxes> all;
   for (std::uint32_t frame = 0; frame < frames; ++frame) {
@@ -127,11 +127,11 @@ TEST(SweptFrames, AreTheSameInAnyOrderAndWhetherChangesAreKnownOrNot) {
   const auto expected = [&](std::uint32_t index, std::uint32_t body) {
     return sweptBox(made[index - std::min(index, 1U)][body], made[index][body]);
   };
-  SweptFrames knowing = swept(made, true);
-  SweptFrames unknowing = swept(made, false);
+  SweptFrames with_changes = swept(made, true);
+  SweptFrames without_changes = swept(made, false);
   for (const std::uint32_t index : {0, 1, 2, 3, 8, 2, 2, 3, 1, 7, 8, 0, 5, 6}) {
-    const Frame frame = knowing.at(index);
-    const Frame other = unknowing.at(index);
+    const Frame frame = with_changes.at(index);
+    const Frame other = without_changes.at(index);
     std::vector<std::uint32_t> changed;
     for (std::uint32_t body = 0; body < 50; ++body) {
       EXPECT_EQ(frame.boxes[body], expected(index, body)) << index << ' ' << body;
@@ -158,7 +158,7 @@ TEST(SweptFrames, PairsIncludeThoseOfBothFrames) {
   for (std::uint32_t index = 1; index < made.size(); ++index) {
     Boxes before = made[index - 1];
     for (std::size_t body = 0; body < before.size(); ++body) {
-      if (isEmpty(made[index][body])) before[body] = kEmptyBox;  // gone before they met
+      if (isEmpty(made[index][body])) before[body] = kEmptyBox;  // vanished: no swept box
     }
     const auto found = pairs(frames.at(index).boxes);
     EXPECT_THAT(found, IsSupersetOf(pairs(made[index])));

@@ -1,4 +1,4 @@
-// Torture: rounds follow from their numbers, worlds are of all kinds, and what fails is found.
+// Torture: rounds depend on their numbers only, worlds are of all kinds, and faults are found.
 
 #include "broadmark/fuzz/torture.h"
 
@@ -39,18 +39,18 @@ TEST(TortureRound, FollowsFromItsNumber) {
 TEST(TortureRound, CoversAllKindsOfWorldsInAllWays) {
   const TortureOptions options = optionsFor({algorithmOf("sap-simd-mt")});
   std::set<std::string> worlds;
-  std::set<std::pair<std::string, int>> ways;
+  std::set<std::pair<std::string, int>> variants;
   TortureCount sum;
   for (std::uint64_t number = 0; number < 60; ++number) {
     for (const auto& [key, count] : runTortureRound(options, number).coverage) {
       worlds.insert(key.world);
-      ways.insert({key.isa + "/" + key.answer, key.threads});
+      variants.insert({key.isa + "/" + key.answer, key.threads});
       sum += count;
     }
   }
   const std::vector<std::string> all = tortureWorlds();
   EXPECT_EQ(worlds, std::set<std::string>(all.begin(), all.end()));
-  EXPECT_GE(ways.size(), supportedIsas().size() * 2 * 3) << "of four numbers of threads";
+  EXPECT_GE(variants.size(), supportedIsas().size() * 2 * 3) << "of four numbers of threads";
   EXPECT_GT(sum.changing, sum.frames / 5);
   EXPECT_GT(sum.filtered, sum.frames / 5);
   EXPECT_LT(sum.changing, sum.frames / 2);
@@ -58,7 +58,7 @@ TEST(TortureRound, CoversAllKindsOfWorldsInAllWays) {
 
 TEST(TortureRound, FindsAndShrinksEachPlantedFault) {
   for (const Algorithm& algorithm : faulty::variants()) {
-    if (algorithm.id == "faulty") continue;  // fails once in a while only
+    if (algorithm.id == "faulty") continue;  // fails only occasionally
     SCOPED_TRACE(algorithm.id);
     const TortureOptions options = optionsFor({algorithm});
     std::optional<TortureFinding> finding;
@@ -70,9 +70,9 @@ TEST(TortureRound, FindsAndShrinksEachPlantedFault) {
     EXPECT_TRUE(finding->minimal);
     EXPECT_LE(finding->part.bodies.size(), 3U);
     EXPECT_LE(finding->part.frames.size(), 3U);
-    // It fails on what is left, in its last frame.
+    // The shrunk part fails in its last frame.
     SubRecording part(*finding->frames, finding->part, "part");
-    Trial trial(finding->run, options.make_host, options.cancelled);
+    Trial trial(finding->test_case, options.make_host, options.cancelled);
     const auto fault = trial.run(part);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->kind, finding->fault.kind);

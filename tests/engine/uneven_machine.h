@@ -1,4 +1,4 @@
-// A made-up machine with the noise that real ones have, for tests of statistics.
+// A simulated machine with realistic noise, for tests of statistics.
 #pragma once
 
 #include <cmath>
@@ -6,19 +6,18 @@
 
 namespace broadmark::tests {
 
-/// A machine whose pace changes: it drifts, and now and then something else takes half of it for a
-/// while. All who share it share that.
+/// A machine with a drifting pace and random bursts of background load, which its users share.
 class UnevenMachine {
  public:
-  /// `pace`: how long everything takes at first, against a machine of pace 1. `wander`: by how much
-  /// the pace changes from one piece of work to the next. `disturbance`: how likely a piece of work
-  /// is the first of those that are slowed down by something else.
+  /// `pace`: initial factor on all times. `wander`: standard deviation of the change of log(pace)
+  /// between two pieces of work. `disturbance`: probability that a burst of slower work begins with
+  /// a piece.
   explicit UnevenMachine(unsigned seed, double pace = 1, double wander = 0.002,
                          double disturbance = 0.01)
       : random_(seed), drift_(std::log(pace)), wander_(wander), disturbance_(disturbance) {}
 
-  /// The time of work that takes `seconds` on a quiet machine: with noise of its own that resembles
-  /// the noise before, and a heavy tail.
+  /// The time of work that takes `seconds` on a quiet machine, with autocorrelated noise of its own
+  /// and a heavy tail.
   double time(double seconds, double& own_noise) {
     drift_ += wander_ * normal_(random_);
     if (burst_ == 0 && uniform_(random_) < disturbance_) burst_ = 20;

@@ -26,7 +26,7 @@ std::string harmless(std::string_view line) {
   return formatJson(message, -1);
 }
 
-/// The one that looks at nothing but boxes: what others do with frames that cannot be is theirs.
+/// An algorithm that reads nothing but boxes; how others treat invalid frames is not tested here.
 Algorithm bruteForce(const std::string& id, const std::string& /*plugin*/) {
   for (Algorithm& algorithm : builtinAlgorithms()) {
     if (algorithm.id == "bf") return algorithm;

@@ -37,8 +37,8 @@ void callEverything(CaseExecutor& host) {
     }
   };
   const auto look = [&](PairRuns runs) {
-    for (const PairRun run : runs) {
-      for (const Pair pair : run) seen += pair.a + pair.b;
+    for (const PairRun part : runs) {
+      for (const Pair pair : part) seen += pair.a + pair.b;
     }
   };
   bool started = false;
@@ -70,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   WorkerOptions options;
   options.command = {WORKER_PARROT, fmt::format("/proc/{}/fd/{}", ::getpid(), file.get())};
   options.hard_limit = options.begin_limit = std::chrono::seconds(5);
-  static const Case run = makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {});
-  callEverything(*makeWorkerProcess(run, options));
+  static const Case test_case = makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {});
+  callEverything(*makeWorkerProcess(test_case, options));
   return 0;
 }

@@ -7,9 +7,9 @@
 namespace broadmark::tests {
 namespace {
 
-SeenAnswer answerOf(std::vector<Pair> pairs) { return {.pairs = std::move(pairs)}; }
+CachedAnswer answerOf(std::vector<Pair> pairs) { return {.pairs = std::move(pairs)}; }
 
-/// That many, far from each other.
+/// `count` pairs of disjoint bodies.
 std::vector<Pair> manyPairs(std::uint32_t count) {
   std::vector<Pair> pairs;
   for (std::uint32_t i = 0; i < count; ++i) pairs.push_back({i * 7919 % count, i});
@@ -30,7 +30,7 @@ TEST(PackedPairsTest, TakesAboutHalfTheMemory) {
 
 TEST(SeenAnswersTest, AreToldApartByLaneAndFrame) {
   AnswerCache seen(1 << 20);
-  SeenAnswer wrong = answerOf({{1, 2}});
+  CachedAnswer wrong = answerOf({{1, 2}});
   wrong.judged = true;
   wrong.difference = FrameDifference{.missed_count = 1, .missed_pairs = {{3, 4}}};
   wrong.right = {{1, 2}, {3, 4}};
@@ -66,7 +66,7 @@ TEST(SeenAnswersTest, TheOldestGiveWayToTheBudget) {
   }
   EXPECT_FALSE(seen.recall(1, 0));
   EXPECT_TRUE(seen.recall(1, 98));
-  // One that is remembered again is young again.
+  // Storing an answer again makes it the newest.
   std::uint32_t oldest = 0;
   while (!seen.recall(1, oldest)) ++oldest;
   const std::size_t before = seen.bytes();
@@ -75,7 +75,7 @@ TEST(SeenAnswersTest, TheOldestGiveWayToTheBudget) {
   seen.remember(1, 100, answerOf(manyPairs(1000)));
   EXPECT_TRUE(seen.recall(1, oldest));
   EXPECT_FALSE(seen.recall(1, oldest + 1));
-  // One that is too large for all of it is not kept, and costs nobody else.
+  // An answer larger than the cache is not stored, and evicts no other.
   seen.remember(1, 500, answerOf(manyPairs(100'000)));
   EXPECT_FALSE(seen.recall(1, 500));
   EXPECT_TRUE(seen.recall(1, 100));

@@ -1,4 +1,4 @@
-// Whose answer is shown, in words.
+// The text that names the answer shown.
 #include "inspector/session/answer_text.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr Aabb kUnit{{0, 0, 0, 0}, {1, 1, 1, 0}};
 constexpr Aabb kFar{{5, 5, 5, 0}, {6, 6, 6, 0}};
 
-/// Three boxes, of which the first two overlap; nobody's answer yet.
+/// Three boxes, of which the first two overlap, without an answer.
 Snapshot threeBoxes() {
   Snapshot snapshot;
   snapshot.frame = 4;
@@ -21,22 +21,22 @@ Snapshot threeBoxes() {
   return snapshot;
 }
 
-LaneReport laneOf(int number, const char* parameter = nullptr) {
-  LaneReport lane;
-  lane.spec.number = number;
-  lane.spec.run.algorithm.id = "sap";
-  if (parameter != nullptr) lane.spec.run.parameters = {{"axis", parameter}};
-  return lane;
+TrackReport trackOf(int number, const char* parameter = nullptr) {
+  TrackReport track;
+  track.spec.number = number;
+  track.spec.test_case.algorithm.id = "sap";
+  if (parameter != nullptr) track.spec.test_case.parameters = {{"axis", parameter}};
+  return track;
 }
 
 TEST(AnswerText, AMissedPairIsToldFromBothSides) {
   Snapshot snapshot = threeBoxes();
-  snapshot.lane = 1;
+  snapshot.track = 1;
   snapshot.checked = true;
   snapshot.right_pairs = 1;
   snapshot.difference.missed_count = 1;
   const std::array<std::uint32_t, 2> both = {0, 1};
-  const AnswerText text = answerText(snapshot, {laneOf(1)}, 1, both);
+  const AnswerText text = answerText(snapshot, {trackOf(1)}, 1, both);
   EXPECT_EQ(text.verdict, AnswerText::Verdict::wrong);
   EXPECT_EQ(text.answer, "sap reports 0 pairs");
   EXPECT_EQ(text.beside, "the oracle finds 1: 1 missed");
@@ -45,12 +45,12 @@ TEST(AnswerText, AMissedPairIsToldFromBothSides) {
 
 TEST(AnswerText, WhatIsRightOrNotComparedSaysSo) {
   Snapshot snapshot = threeBoxes();
-  snapshot.lane = 1;
+  snapshot.track = 1;
   snapshot.pairs = {{0, 1}};
-  EXPECT_EQ(answerText(snapshot, {laneOf(1)}, 1, {}).verdict, AnswerText::Verdict::unchecked);
+  EXPECT_EQ(answerText(snapshot, {trackOf(1)}, 1, {}).verdict, AnswerText::Verdict::unchecked);
   snapshot.checked = true;
   snapshot.right_pairs = 1;
-  const AnswerText text = answerText(snapshot, {laneOf(1)}, 1, {});
+  const AnswerText text = answerText(snapshot, {trackOf(1)}, 1, {});
   EXPECT_EQ(text.verdict, AnswerText::Verdict::right);
   EXPECT_EQ(text.answer, "sap reports 1 pair");
   EXPECT_EQ(text.beside, "the oracle finds the same");
@@ -60,20 +60,20 @@ TEST(AnswerText, WhatIsRightOrNotComparedSaysSo) {
 TEST(AnswerText, WithoutAnAlgorithmsAnswerItIsTheOracles) {
   Snapshot snapshot = threeBoxes();
   snapshot.pairs = {{0, 1}};
-  const AnswerText text = answerText(snapshot, {laneOf(1)}, 1, {});
+  const AnswerText text = answerText(snapshot, {trackOf(1)}, 1, {});
   EXPECT_EQ(text.verdict, AnswerText::Verdict::oracle);
   EXPECT_EQ(text.answer, "the oracle finds 1 pair");
   EXPECT_EQ(text.beside, "sap has no answer for frame 4");
-  EXPECT_EQ(answerText(snapshot, {laneOf(1)}, 0, {}).beside, "no algorithm's answer is shown");
+  EXPECT_EQ(answerText(snapshot, {trackOf(1)}, 0, {}).beside, "no algorithm's answer is shown");
   const std::array<std::uint32_t, 2> apart = {1, 2};
   EXPECT_EQ(answerText(snapshot, {}, 0, apart).pair, "1-2: the oracle does not find it");
 }
 
 TEST(AnswerText, TwoLanesOfOneAlgorithmAreToldApart) {
   Snapshot snapshot = threeBoxes();
-  snapshot.lane = 2;
-  const std::vector<LaneReport> lanes = {laneOf(1), laneOf(2, "x")};
-  EXPECT_EQ(answerText(snapshot, lanes, 2, {}).owner, caseName(lanes[1].spec.run));
+  snapshot.track = 2;
+  const std::vector<TrackReport> tracks = {trackOf(1), trackOf(2, "x")};
+  EXPECT_EQ(answerText(snapshot, tracks, 2, {}).owner, caseName(tracks[1].spec.test_case));
 }
 
 }  // namespace

@@ -62,14 +62,14 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
 TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
   const FolderWatch watch(directory / "");
   startBake(bake, options({3000}, 100'000));
-  watch.waitUntil([&] { return !bake.report().items.empty(); });  // before its file is begun
+  watch.waitUntil([&] { return !bake.report().items.empty(); });  // before its file exists
   EXPECT_THROW(startBake(bake, options({20}, 5)), InputError);
   bake.cancel();
   const BackgroundBake::Report report = wait();
   EXPECT_EQ(report.state, TaskState::cancelled);
   EXPECT_EQ(report.count(Outcome::waiting), 1U);
   EXPECT_FALSE(std::filesystem::exists(report.items.front().path));
-  startBake(bake, options({20}, 5));  // and it can begin anew
+  startBake(bake, options({20}, 5));  // a cancelled bake can be restarted
   EXPECT_EQ(wait().state, TaskState::done);
 }
 

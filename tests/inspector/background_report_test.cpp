@@ -68,7 +68,7 @@ TEST(BackgroundReport, SaysWhatIsWrong) {
   EXPECT_FALSE(fs::exists(directory / "page.html"));
 }
 
-// A stranger's folder may hold what Python would find there first.
+// An untrusted folder may contain modules that Python would import first.
 TEST(BackgroundReport, RunsNothingFromTheCurrentFolder) {
   const TemporaryDirectory directory;
   fs::create_directories(directory / "broadmark");

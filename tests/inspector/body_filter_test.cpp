@@ -1,5 +1,5 @@
-// Who of a crowd is drawn.
-#include "inspector/session/view_options.h"
+// The body filter: which bodies are drawn.
+#include "inspector/session/display_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -23,14 +23,14 @@ class CaseExportTest : public testing::Test {
 
   RunProgress waitUntilIdle() { return tests::waitUntilIdle(session); }
 
-  /// Goes to the first mismatch of an algorithm.
+  /// Seeks the first mismatch of an algorithm.
   RunProgress findMismatch(const std::string& algorithm) {
     session.draft.choose("brownian");
     setParameters(session.draft.scene(), {{"engine", "kinematic"}});
     setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "60"}});
     session.draft.simulate();
-    setParameters(*session.lanes.add(algorithm).parameters, {{"fat_margin", "0.5"}});
-    session.lanes.changed();
+    setParameters(*session.tracks.add(algorithm).parameters, {{"fat_margin", "0.5"}});
+    session.tracks.changed();
     session.mismatches.goToNext(waitUntilIdle());
     const RunProgress seen = waitUntilIdle();
     EXPECT_TRUE(seen.stop) << "the fault did not show";
@@ -49,9 +49,9 @@ class CaseExportTest : public testing::Test {
 TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
   for (const std::string algorithm : {"faulty", "faulty-extra"}) {
     SCOPED_TRACE(algorithm);
-    session.lanes.clear();
+    session.tracks.clear();
     const RunProgress seen = findMismatch(algorithm);
-    session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / algorithm);
+    session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / algorithm);
     waitUntilIdle();
     const CaseExport::Report report = waitForEnd();
     waitUntilIdle();
@@ -89,8 +89,8 @@ TEST_F(CaseExportTest, TheFirstWrongPairIsVisited) {
 
 TEST_F(CaseExportTest, BadFilesAreTold) {
   const RunProgress seen = findMismatch("faulty");
-  session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.posrot");
-  session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "no/a.aabbs");
+  session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / "a.posrot");
+  session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / "no/a.aabbs");
   waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 2U);
   EXPECT_THAT(session.notices.errors[0],
@@ -102,7 +102,7 @@ TEST_F(CaseExportTest, BadFilesAreTold) {
 TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
   const RunProgress seen = findMismatch("faulty");
   session.draft.simulate();
-  session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.aabbs");
+  session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / "a.aabbs");
   waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("another scene"));
@@ -111,13 +111,13 @@ TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
 TEST_F(CaseExportTest, CanBeCancelled) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport& work = session.jobs.get<CaseExport>();
-  // It is cancelled in the first frame of its trials, or in a later one.
+  // The export is cancelled in the first frame of its trials, or in a later one.
   for (const int last : {1, 2, 5}) {
     int steps = 0;
     const std::function<void()> before_step = [&] {
       if (++steps == last) work.cancel();
     };
-    startExport(work, seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame),
+    startExport(work, seen.tracks[0].spec.test_case, seen.frames(seen.snapshot->frame),
                 seen.snapshot->difference, directory / "a.aabbs",
                 [&](const Case& test_case, const CancelQuery&) {
                   return std::make_unique<WatchedHost>(test_case, before_step);
@@ -133,13 +133,13 @@ TEST_F(CaseExportTest, CanBeCancelled) {
 TEST_F(CaseExportTest, EndsWithItsOwner) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport work;
-  startExport(work, seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame),
+  startExport(work, seen.tracks[0].spec.test_case, seen.frames(seen.snapshot->frame),
               seen.snapshot->difference, directory / "a.aabbs");
 }
 
 TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
   const RunProgress seen = findMismatch("faulty");
-  Case right = seen.lanes[0].spec.run;
+  Case right = seen.tracks[0].spec.test_case;
   right.algorithm = builtinAlgorithms().front();
   right.parameters.clear();
   session.exportCase(right, seen.snapshot, directory / "a.aabbs");
@@ -153,7 +153,7 @@ TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
 TEST_F(CaseExportTest, TheSearchTellsWhenThereIsNoMismatch) {
   setParameters(session.draft.scene(), {{"objects", "50"}, {"frames", "8"}});
   session.draft.simulate();
-  session.lanes.add("sap");
+  session.tracks.add("sap");
   session.mismatches.goToNext(waitUntilIdle());
   EXPECT_TRUE(session.mismatches.searching());
   waitUntilIdle();
@@ -171,7 +171,7 @@ TEST_F(CaseExportTest, TheSearchGoesOnFromMismatchToMismatch) {
   const std::uint32_t second = seen.snapshot->frame;
   EXPECT_GT(second, first);
   EXPECT_TRUE(seen.snapshot->difference.isMismatch());
-  // Those known already are gone to directly.
+  // Known mismatches are reached without a search.
   session.playback.step(-static_cast<int>(session.playback.frame()));
   waitUntilIdle();
   session.mismatches.goToNext(waitUntilIdle());
@@ -187,23 +187,23 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   session.saveRecording(directory / "run.aabbs");
   waitUntilIdle();
   Results results;
-  CaseResult one;
-  one.id = "some/case";
-  one.algorithm = "faulty";
-  one.family = "Faulty";
-  one.parameters = {{"fat_margin", "0.5"}};
-  one.status = Status::mismatch;
-  one.differences = {seen.snapshot->difference};
+  CaseResult failed;
+  failed.id = "some/case";
+  failed.algorithm = "faulty";
+  failed.family = "Faulty";
+  failed.parameters = {{"fat_margin", "0.5"}};
+  failed.status = Status::mismatch;
+  failed.differences = {seen.snapshot->difference};
   const auto recording = openRecordingFile(directory / "run.aabbs");
-  one.recording = {.scene = recording->scene(),
-                   .hash = recording->hash(),
-                   .path = (directory / "run.aabbs").string()};
-  CaseResult right = one;
+  failed.recording = {.scene = recording->scene(),
+                      .hash = recording->hash(),
+                      .path = (directory / "run.aabbs").string()};
+  CaseResult right = failed;
   right.id = "right/case";
   right.status = Status::ok;
   right.differences.clear();
   results.environments.resize(1);
-  results.cases = {right, one};
+  results.cases = {right, failed};
   for (const ResultWriter& writer : resultWriters()) {
     if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));
   }
@@ -218,7 +218,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   session.openCase(directory / "r.json", "some/case");
   const RunProgress opened = waitUntilIdle();
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
-  ASSERT_EQ(session.lanes.list.size(), 1U);
+  ASSERT_EQ(session.tracks.list.size(), 1U);
   EXPECT_EQ(opened.snapshot->frame, wrong);
   EXPECT_TRUE(opened.snapshot->difference.isMismatch());
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Mismatches"));

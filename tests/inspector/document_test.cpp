@@ -1,4 +1,4 @@
-// Authoring in the session, without any drawing.
+// Authoring in the session, without drawing.
 #include "inspector/session/document.h"
 
 #include <gmock/gmock.h>
@@ -39,7 +39,7 @@ class AuthoringTest : public testing::Test {
 
 TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
   for (const Algorithm& algorithm : builtinAlgorithms()) {
-    if (algorithm.family != "GPU") session.lanes.add(algorithm.id);
+    if (algorithm.family != "GPU") session.tracks.add(algorithm.id);
   }
   session.document.start({});
   const RunProgress seen = waitUntilIdle();
@@ -54,12 +54,12 @@ TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
   session.document.start(threeBodies());
   const RunProgress first = waitUntilIdle();
   ASSERT_EQ(first.snapshot->boxes->size(), 3U);
-  const std::uint64_t scene = first.footage->scene;
+  const std::uint64_t scene = first.source->scene;
   EXPECT_NE(scene, 0U);
   session.selection.select({1});
   session.document.edit([](SceneEditor& editor) { editor.duplicate({0, 5, 0}); });
   RunProgress seen = waitUntilIdle();
-  EXPECT_EQ(seen.footage->scene, scene);
+  EXPECT_EQ(seen.source->scene, scene);
   EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
   EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{3});
   EXPECT_TRUE(session.document.isModified());
@@ -84,7 +84,7 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(2));
   session.document.edit(&SceneEditor::selectAll);
   EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(0, 1, 2));
-  // What is selected elsewhere is none of the document's business.
+  // The document ignores the selection in other recordings.
   setParameters(session.draft.scene(), {{"objects", "40"}, {"frames", "5"}});
   session.draft.simulate();
   waitUntilIdle();
@@ -106,9 +106,9 @@ TEST_F(AuthoringTest, GroupsOfTheDocumentAreSelectedAsOne) {
 
 TEST_F(AuthoringTest, AnotherWorldIsAnotherSceneToLookAt) {
   session.document.start(threeBodies());
-  const std::uint64_t before = waitUntilIdle().footage->scene;
+  const std::uint64_t before = waitUntilIdle().source->scene;
   session.document.edit([](SceneEditor& e) { e.setWorld({{-99, -99, -99, 0}, {99, 99, 99, 0}}); });
-  EXPECT_NE(waitUntilIdle().footage->scene, before);
+  EXPECT_NE(waitUntilIdle().source->scene, before);
 }
 
 TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
@@ -126,7 +126,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
     editor.transform("turn", {.centre = editor.selectionCentre(), .turn = {0, 0.6F, 0, 0.8F}});
   });
   const AuthoredScene scene = session.document.editor.scene();
-  EXPECT_TRUE(session.document.save(directory / "three"));  // gets its extension
+  EXPECT_TRUE(session.document.save(directory / "three"));  // the document appends the extension
   EXPECT_EQ(session.document.path(), directory / "three.json");
   EXPECT_FALSE(session.document.isModified());
   session.document.start({});

@@ -1,4 +1,4 @@
-// The gizmo's geometry: which handle is hit, and what a drag of it makes of the bodies.
+// The gizmo's geometry: which handle is hit, and how dragging it changes the bodies.
 #include "inspector/authoring/gizmo.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kReach = 8;
 
-/// Looks at the gizmo from a corner, where no axis points at the eye.
+/// A camera at a corner of the gizmo, so that no axis points at the eye.
 class GizmoTest : public testing::Test {
  protected:
   GizmoTest() {
@@ -32,7 +32,7 @@ class GizmoTest : public testing::Test {
     return {};
   }
 
-  /// Drags the handle so that what was seen at its grip follows the mouse there.
+  /// Drags the handle by its grip, by a vector in pixels.
   [[nodiscard]] GizmoDrag::Outcome drag(Tool tool, Handle handle, Pixel by,
                                         bool snaps = false) const {
     const Pixel from = gripOf(tool, handle);
@@ -72,7 +72,7 @@ TEST_F(GizmoTest, WhatIsDraggedAlongAnAxisStaysUnderTheMouse) {
   EXPECT_NE(outcome.change.move[0], 0);
   EXPECT_EQ(outcome.change.move[1], 0);
   EXPECT_EQ(outcome.change.move[2], 0);
-  // The end of the mouse's way, seen on the axis: at its nearest to the mouse.
+  // The moved grip is the point of the axis nearest to the mouse on the screen.
   const Pixel from = gripOf(Tool::move, Handle::x);
   const double grip = 0.8;
   const Pixel now = sight().pixelOf({grip + outcome.change.move[0], 0, 0}).value();
@@ -110,10 +110,10 @@ TEST_F(GizmoTest, ARingTurnsAboutItsAxis) {
 }
 
 TEST_F(GizmoTest, ScalingIsAlongAnAxisOrAlongAll) {
-  const auto one = drag(Tool::scale, Handle::y, {0, -30}).change.scale;
-  EXPECT_GT(one[1], 1);
-  EXPECT_EQ(one[0], 1);
-  EXPECT_EQ(one[2], 1);
+  const auto scale = drag(Tool::scale, Handle::y, {0, -30}).change.scale;
+  EXPECT_GT(scale[1], 1);
+  EXPECT_EQ(scale[0], 1);
+  EXPECT_EQ(scale[2], 1);
   const auto all = drag(Tool::scale, Handle::all, {30, 0}).change.scale;
   EXPECT_GT(all[0], 1);
   EXPECT_EQ(all[0], all[1]);

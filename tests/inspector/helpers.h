@@ -1,4 +1,4 @@
-// What tests of the session share.
+// Helpers of the session's tests.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,23 +21,23 @@
 
 namespace broadmark::tests {
 
-/// The built-in algorithms, and those that are wrong once in a while.
+/// The built-in algorithms and the faulty ones.
 inline std::vector<Algorithm> algorithmsAndFaultyOnes() {
   std::vector<Algorithm> all = builtinAlgorithms();
   for (const Algorithm& algorithm : faulty::variants()) all.push_back(algorithm);
   return all;
 }
 
-/// The limit on a test's time is the only one.
+/// No timeout but the test's own.
 inline constexpr std::chrono::hours kForever{24};
 
-/// Commits, waits and advances several times, as pictures do; returns the last progress.
+/// Commits, waits and advances as several drawn frames do; returns the last progress.
 inline RunProgress waitUntilIdle(Session& session) {
   RunProgress seen;
   for (int picture = 0; picture < 4; ++picture) {
     session.commit();
     EXPECT_TRUE(session.runs.waitUntilIdle(kForever));
-    session.runs.look([&](const RunProgress& progress) {
+    session.runs.readProgress([&](const RunProgress& progress) {
       session.advance(progress, 0);
       seen = progress;
     });
@@ -45,7 +45,7 @@ inline RunProgress waitUntilIdle(Session& session) {
   return seen;
 }
 
-/// A case whose frames took so many nanoseconds, a list for each repetition.
+/// A case with these frame times in nanoseconds, a list per repetition.
 inline CaseResult caseOf(const std::string& algorithm, std::uint32_t objects,
                          const std::vector<std::vector<std::int64_t>>& repetitions) {
   CaseResult result;
@@ -65,7 +65,7 @@ inline CaseResult caseOf(const std::string& algorithm, std::uint32_t objects,
   return result;
 }
 
-/// A recording of 20 frames: in each frame another body is gone, the last ones first.
+/// A recording of 20 frames: in each frame the present body with the highest number vanishes.
 inline std::filesystem::path vanishingBodies(const TemporaryDirectory& directory,
                                              std::uint32_t objects,
                                              const CollisionFilter& filter = {}) {

@@ -1,4 +1,4 @@
-// The window's contents, drawn off-screen, through the real queue of events.
+// The window's contents, drawn off-screen, with events from the real input queue.
 #include "inspector/inspector.h"
 
 #define GLFW_INCLUDE_NONE
@@ -30,11 +30,11 @@ class InspectorTest : public testing::Test {
         gl(*context),
         inspector(gl, algorithmsAndFaultyOnes(), {}, 1),
         former_directory(std::filesystem::current_path()) {
-    std::filesystem::current_path(directory / "");  // screenshots go there
+    std::filesystem::current_path(directory / "");  // the folder of screenshots
     setParameters(inspector.session().draft.scene(), {{"objects", "40"}, {"frames", "20"}});
   }
   ~InspectorTest() override {
-    // A batch that has been begun writes below the directory that is about to go.
+    // A running batch writes below the directory that is about to be removed.
     BackgroundBake& bake = inspector.session().jobs.get<BackgroundBake>();
     bake.cancel();
     bake.wait();
@@ -54,7 +54,7 @@ class InspectorTest : public testing::Test {
     return target.read();
   }
 
-  /// Draws until the queue is empty and all is computed.
+  /// Draws until the queue is empty and the session is idle.
   void waitUntilIdle() {
     for (int i = 0; i < 400; ++i) {
       draw();
@@ -66,7 +66,7 @@ class InspectorTest : public testing::Test {
   void colourBy(std::string_view mode) {
     const auto found = std::ranges::find(colourModes(), mode, &ColourMode::id);
     ASSERT_NE(found, colourModes().end()) << mode;
-    inspector.session().view.colouring =
+    inspector.session().display.colouring =
         static_cast<std::size_t>(std::distance(colourModes().begin(), found));
   }
 
@@ -136,13 +136,13 @@ TEST_F(InspectorTest, LettersTypedIntoAnInputAreNoShortcuts) {
   EXPECT_EQ(value("frame"), "0");
 }
 
-// Among several frames for each pixel.
+// At a zoom with several frames per pixel.
 TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
   Session& session = inspector.session();
   setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
   session.draft.choose("brownian");
   session.draft.simulate();
-  session.lanes.add("faulty");
+  session.tracks.add("faulty");
   session.playback.seek(300);
   waitUntilIdle();
   const std::string wrong = value("stop_frame");
@@ -162,7 +162,7 @@ TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
 
 TEST_F(InspectorTest, EverySizeCanBeDrawn) {
   inspector.session().draft.simulate();
-  inspector.session().lanes.add("kd");
+  inspector.session().tracks.add("kd");
   for (const auto& [w, h] : {std::pair{1, 1},
                              {3, 700},
                              {700, 3},
@@ -187,7 +187,7 @@ TEST_F(InspectorTest, LooksAsItDid) {
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/inspector.png")));
 }
 
-// In a small window the tools of an authored scene leave no room for a long legend.
+// In a small window the authoring tools leave no space for a long legend.
 TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
   width = 800;
   height = 500;
@@ -195,7 +195,7 @@ TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
   session.document.start({});
   session.document.add([&] { return session.document.stroke(); });
   session.document.tools.tool = Tool::brush;
-  colourBy("correctness");  // whose legend has four rows, for which there is no room
+  colourBy("correctness");  // its four legend rows do not fit
   waitUntilIdle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/authored.png")));
 }
@@ -217,7 +217,7 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
 
 TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
   inspector.session().draft.simulate();
-  inspector.session().lanes.add("sap");
+  inspector.session().tracks.add("sap");
   waitUntilIdle();
   EXPECT_EQ(value("legend.oracle"), "") << "in frame 0 no algorithm answers";
   key(GLFW_KEY_RIGHT);
@@ -225,7 +225,7 @@ TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
   EXPECT_EQ(value("legend.oracle"), value("legend"));
   EXPECT_THAT(value("view.answer"), testing::HasSubstr("sap reports"));
   EXPECT_EQ(value("view.oracle"), "the oracle finds the same");
-  colourBy("motion");  // which has nothing to do with the answer
+  colourBy("motion");  // a colour mode that is independent of the answer
   waitUntilIdle();
   EXPECT_EQ(value("legend.oracle"), "");
 }
@@ -245,7 +245,7 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
   waitUntilIdle();
   ASSERT_NE(inspector.ui().find("View/scene"), nullptr);
   const WidgetPlace view = *inspector.ui().find("View/scene");
-  // Somewhere in the view there are bodies.
+  // The view shows bodies at some pixel.
   for (int i = 0; i < 81 && value("selection") == "0"; ++i) {
     const float x = 0.3F + 0.05F * static_cast<float>(i % 9);
     const float y = 0.3F + 0.05F * static_cast<float>(i / 9);
@@ -291,7 +291,7 @@ TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
   waitUntilIdle();
   EXPECT_EQ(value("selected_body"), "absent: vanished in frame 3");
   const std::string camera = value("camera.distance");
-  key(GLFW_KEY_F);  // there is nowhere to fly to
+  key(GLFW_KEY_F);  // the camera has no target
   waitUntilIdle();
   EXPECT_EQ(value("camera.distance"), camera);
 }
@@ -313,10 +313,10 @@ TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
   }
 }
 
-// Every widget of every panel is pressed once, and whatever that opens is closed again.
+// Presses every widget of every panel once, and closes what it opens.
 TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   inspector.session().draft.simulate();
-  inspector.session().lanes.add("grid-bf-mt");
+  inspector.session().tracks.add("grid-bf-mt");
   waitUntilIdle();
   std::set<std::string> pressed;
   for (const auto& panel : inspector.panels()) {
@@ -345,21 +345,21 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   EXPECT_FALSE(inspector.closing());
 }
 
-// A panel comes to the front with Ctrl and its number (of the last ones also Shift), and arrows
-// lead to all that can be pressed.
+// Ctrl and a number (for the last panels also Shift) raise a panel, and the arrow keys reach all of
+// its widgets.
 TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
   width = 1000;
   height = 700;
   inspector.session().draft.simulate();
-  inspector.session().lanes.add("grid-bf-mt");
+  inspector.session().tracks.add("grid-bf-mt");
   waitUntilIdle();
   const auto press = [&](Key which, const std::vector<Key>& held = {}) {
-    for (const Key each : held) {
-      input.push({.kind = InputEvent::Kind::key, .code = each, .down = true});
+    for (const Key modifier : held) {
+      input.push({.kind = InputEvent::Kind::key, .code = modifier, .down = true});
     }
     key(which);
-    for (const Key each : held) {
-      input.push({.kind = InputEvent::Kind::key, .code = each, .down = false});
+    for (const Key modifier : held) {
+      input.push({.kind = InputEvent::Kind::key, .code = modifier, .down = false});
     }
     for (int i = 0; i < 8 && (i < 2 || !input.empty()); ++i) draw();
   };
@@ -370,7 +370,7 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
     if (i >= 10) held.push_back(GLFW_KEY_LEFT_SHIFT);
     press(static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), held);
     draw(3);
-    const std::string where(kPlaces.nameOf(panels[i].place));
+    const std::string where(kDockAreas.nameOf(panels[i].area));
     EXPECT_EQ(inspector.preferences().tabs.at(where), panels[i].name);
     std::set<std::string> unreached;
     for (const auto& [name, place] : inspector.ui().places()) {
@@ -385,12 +385,12 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
     unreached.erase(value("focus"));
     for (int row = 0; row < 70 && !unreached.empty(); ++row) {
       arrive(GLFW_KEY_DOWN);
-      // A table that scrolls is a window of its own, which has to be entered.
+      // A scrolling table is a child window that must be entered.
       if (row == 0 && prefix == "Results/") arrive(GLFW_KEY_ENTER);
     }
-    // What stands beside others: the last of a row, and the second.
+    // Widgets beside others: the last of a row, and the second.
     for (const int beside : {3, 1}) {
-      // To the last row.
+      // Move the focus to the last row.
       std::string before;
       for (int row = 0; row < 70 && !unreached.empty() && value("focus") != before; ++row) {
         before = value("focus");
@@ -406,7 +406,7 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
   }
 }
 
-/// BROADMARK_RANDOM_EVENTS, or few.
+/// BROADMARK_RANDOM_EVENTS, or 100.
 int randomEvents() {
   const char* stated = std::getenv("BROADMARK_RANDOM_EVENTS");
   return stated != nullptr ? static_cast<int>(parseInteger(stated, "events", 1, 1'000'000)) : 100;
@@ -445,13 +445,13 @@ TEST_P(RandomEvents, DoNoHarm) {
                            GLFW_KEY_F6,
                            GLFW_KEY_S};
   inspector.session().draft.simulate();
-  inspector.session().lanes.add("sap");
+  inspector.session().tracks.add("sap");
   waitUntilIdle();
   for (int event = 0; event < events; ++event) {
     switch (below(7)) {
       case 0:
       case 1: {
-        // Mostly at something: an arbitrary point is rarely one.
+        // Mostly press a widget: an arbitrary point rarely hits one.
         const auto& places = inspector.ui().places();
         auto place = places.begin();
         std::advance(place, below(static_cast<int>(places.size())));
@@ -482,7 +482,7 @@ TEST_P(RandomEvents, DoNoHarm) {
         break;
     }
     draw();
-    // Duplicated again and again, bodies in one place only cost the engine hours.
+    // Repeated duplication puts bodies at the same position, and the engine would take hours.
     constexpr std::size_t kMaxBodies = 20'000;
     Document& document = inspector.session().document;
     if (document.editor.scene().bodies.size() > kMaxBodies) {

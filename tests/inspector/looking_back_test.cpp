@@ -1,4 +1,4 @@
-// Frames that have been seen are shown again at once; algorithms run again only where they have to.
+// Frames in the answer cache are shown at once; algorithms run again only if necessary.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,10 +27,10 @@ class LookingBackTest : public testing::Test {
     return tests::waitUntilIdle(session);
   }
 
-  /// The frames that it has to have been run to.
+  /// The frames that the algorithm has run to.
   RunProgress simulate(const char* algorithm, std::uint32_t frame) {
     session.draft.simulate();
-    session.lanes.add(algorithm);
+    session.tracks.add(algorithm);
     return seek(frame);
   }
 
@@ -41,25 +41,25 @@ TEST_F(LookingBackTest, NoAlgorithmRunsForAFrameThatWasSeen) {
   simulate("sap", 30);
   for (const std::uint32_t frame : {12U, 3U, 29U}) {
     const RunProgress seen = seek(frame);
-    EXPECT_EQ(seen.lanes[0].frame, 30U);
+    EXPECT_EQ(seen.tracks[0].frame, 30U);
     ASSERT_EQ(seen.snapshot->frame, frame);
-    EXPECT_EQ(seen.snapshot->lane, session.lanes.shown());
+    EXPECT_EQ(seen.snapshot->track, session.tracks.shown());
     EXPECT_TRUE(seen.snapshot->checked);
     EXPECT_EQ(seen.snapshot->right_pairs, seen.snapshot->pairs.size());
     EXPECT_EQ(seen.snapshot->right_overlaps, seen.snapshot->overlaps);
     EXPECT_THAT(seen.snapshot->pairs,
                 testing::UnorderedElementsAreArray(bruteForcePairs(*seen.snapshot->boxes)));
   }
-  // What comes next is run from where it stands.
-  EXPECT_EQ(seek(31).lanes[0].frame, 31U);
+  // The next frame continues from the algorithm's present frame.
+  EXPECT_EQ(seek(31).tracks[0].frame, 31U);
 }
 
 TEST_F(LookingBackTest, FrameZeroNeedsNobody) {
   simulate("sap", 30);
   const RunProgress seen = seek(0);
   EXPECT_EQ(seen.snapshot->frame, 0U);
-  EXPECT_EQ(seen.snapshot->lane, 0);
-  EXPECT_EQ(seen.lanes[0].frame, 30U);
+  EXPECT_EQ(seen.snapshot->track, 0);
+  EXPECT_EQ(seen.tracks[0].frame, 30U);
 }
 
 TEST_F(LookingBackTest, AMismatchAndTheCountersComeAtOnce) {
@@ -68,11 +68,11 @@ TEST_F(LookingBackTest, AMismatchAndTheCountersComeAtOnce) {
   ASSERT_TRUE(wrong.snapshot->difference.isMismatch());
   seek(wrong.snapshot->frame - 1);
   const RunProgress again = seek(wrong.snapshot->frame);
-  EXPECT_EQ(again.lanes[0].frame, wrong.snapshot->frame);
+  EXPECT_EQ(again.tracks[0].frame, wrong.snapshot->frame);
   EXPECT_EQ(again.snapshot->difference.missed_pairs, wrong.snapshot->difference.missed_pairs);
   EXPECT_EQ(again.snapshot->right_pairs, wrong.snapshot->right_pairs);
   EXPECT_EQ(again.snapshot->right_overlaps, wrong.snapshot->right_overlaps);
-  session.lanes.clear();
+  session.tracks.clear();
   const RunProgress first = simulate("tracy", 9);
   seek(4);
   EXPECT_FALSE(first.snapshot->counters.empty());
@@ -81,12 +81,12 @@ TEST_F(LookingBackTest, AMismatchAndTheCountersComeAtOnce) {
 
 TEST_F(LookingBackTest, ItsStructureIsDrawnOnceItHasRunAgain) {
   simulate("grid-bf", 30);
-  session.lanes.add("sap");
+  session.tracks.add("sap");
   seek(30);
-  session.view.structure = true;
+  session.display.structure = true;
   const RunProgress seen = seek(12);
-  EXPECT_EQ(seen.lanes[0].frame, 12U);
-  EXPECT_EQ(seen.lanes[1].frame, 30U) << "only the shown algorithm has to";
+  EXPECT_EQ(seen.tracks[0].frame, 12U);
+  EXPECT_EQ(seen.tracks[1].frame, 30U) << "only the shown algorithm has to";
   ASSERT_TRUE(seen.snapshot->structure);
   EXPECT_FALSE(seen.snapshot->structure->boxes().empty());
 }
@@ -99,48 +99,49 @@ TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
   watched.draft.choose("brownian");
   setParameters(watched.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
   watched.draft.simulate();
-  watched.lanes.add("bf");
+  watched.tracks.add("bf");
   watched.playback.goTo(100);
   waitUntilIdle(watched);
   std::optional<RunProgress> first;
   before_step = [&] {
-    if (!first) watched.runs.look([&](const RunProgress& progress) { first = progress; });
+    if (!first) watched.runs.readProgress([&](const RunProgress& progress) { first = progress; });
   };
-  watched.view.structure = true;
+  watched.display.structure = true;
   watched.playback.goTo(90);
   waitUntilIdle(watched);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->doing, "running bf again up to frame 90");
   EXPECT_EQ(first->snapshot->frame, 90U);
   EXPECT_FALSE(first->snapshot->pairs.empty());
-  EXPECT_EQ(first->lanes[0].frame, 0U);
+  EXPECT_EQ(first->tracks[0].frame, 0U);
 }
 
 TEST_F(LookingBackTest, WhoPlaysOnHasEveryStateRight) {
   session.draft.simulate();
-  for (const char* algorithm : {"tracy", "tide", "kd", "dbvt-d"}) session.lanes.add(algorithm);
+  for (const char* algorithm : {"tracy", "tide", "kd", "dbvt-d"}) session.tracks.add(algorithm);
   seek(40);
-  EXPECT_EQ(seek(20).lanes[0].frame, 40U);
+  EXPECT_EQ(seek(20).tracks[0].frame, 40U);
   session.play(true);
   for (int picture = 0; picture < 2000 && session.playback.frame() < 60; ++picture) {
     session.commit();
     session.runs.waitUntilIdle(kForever);
-    session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
+    session.runs.readProgress([&](const RunProgress& progress) { session.advance(progress, 1); });
   }
   const RunProgress seen = seek(session.playback.frame());
   EXPECT_GE(seen.snapshot->frame, 60U);
-  for (const LaneReport& lane : seen.lanes) {
-    EXPECT_EQ(lane.status, Status::ok) << lane.reason;
-    EXPECT_EQ(lane.frame, seen.snapshot->frame);
-    EXPECT_TRUE(std::ranges::all_of(lane.frames, &FrameRecord::checked));
+  for (const TrackReport& track : seen.tracks) {
+    EXPECT_EQ(track.status, Status::ok) << track.reason;
+    EXPECT_EQ(track.frame, seen.snapshot->frame);
+    EXPECT_TRUE(std::ranges::all_of(track.frames, &FrameRecord::checked));
   }
 }
 
 TEST_F(LookingBackTest, WhatWasNotCheckedIsRunAgain) {
   session.mismatches.check = false;
   simulate("faulty", 300);
-  EXPECT_EQ(seek(1).lanes[0].frame, 300U);
-  session.runs.look([&](const RunProgress& progress) { session.mismatches.goToNext(progress); });
+  EXPECT_EQ(seek(1).tracks[0].frame, 300U);
+  session.runs.readProgress(
+      [&](const RunProgress& progress) { session.mismatches.goToNext(progress); });
   const RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.stop) << "the fault did not show";
   EXPECT_EQ(seen.snapshot->frame, seen.stop->frame);
@@ -149,25 +150,25 @@ TEST_F(LookingBackTest, WhatWasNotCheckedIsRunAgain) {
 
 TEST_F(LookingBackTest, AnotherAlgorithmsAnswerIsItsOwn) {
   simulate("sap", 20);
-  const int dbvt = session.lanes.add("dbvt-d").number;
+  const int dbvt = session.tracks.add("dbvt-d").number;
   seek(20);
   seek(10);
-  session.lanes.show(dbvt);
+  session.tracks.show(dbvt);
   const RunProgress seen = seek(10);
-  EXPECT_EQ(seen.snapshot->lane, dbvt);
-  EXPECT_EQ(seen.lanes[1].frame, 10U) << "its answer was not kept";
+  EXPECT_EQ(seen.snapshot->track, dbvt);
+  EXPECT_EQ(seen.tracks[1].frame, 10U) << "its answer was not kept";
   EXPECT_GT(seen.snapshot->difference.allowed_extra_count, 0U);
   EXPECT_LT(seen.snapshot->right_pairs, seen.snapshot->pairs.size());
-  session.lanes.show(0);
+  session.tracks.show(0);
   EXPECT_EQ(seek(10).snapshot->pairs.size(), seen.snapshot->right_pairs);
 }
 
 TEST_F(LookingBackTest, EditedParametersHaveSeenNothing) {
   simulate("grid-bf", 20);
   seek(10);
-  setParameters(*session.lanes.list.front().parameters, {{"objects_per_cell", "3"}});
-  session.lanes.changed();
-  EXPECT_EQ(seek(10).lanes[0].frame, 10U);
+  setParameters(*session.tracks.list.front().parameters, {{"objects_per_cell", "3"}});
+  session.tracks.changed();
+  EXPECT_EQ(seek(10).tracks[0].frame, 10U);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(OpenedResults, AreListedAsInTheFileUntilTheyAreSorted) {
   EXPECT_THAT(listed(results), ElementsAre("kd 1000", "sap 1000", "kd 200", "bf 1000"));
   results.sort("seconds_per_frame", true);
   EXPECT_THAT(listed(results), ElementsAre("sap 1000", "kd 200", "kd 1000", "bf 1000"));
-  // By size, not by letters.
+  // Numerically, not alphabetically.
   results.sort("recording", false);
   EXPECT_THAT(listed(results), ElementsAre("kd 200", "sap 1000", "bf 1000", "kd 1000"));
   results.sort("variant", true);
@@ -47,7 +47,7 @@ TEST(OpenedResults, AreListedAsInTheFileUntilTheyAreSorted) {
 
 TEST(OpenedResults, AreFiltered) {
   CaseResult wrong = caseOf("kd", 200, {{10}});
-  // The same frame in two repetitions is one mismatch.
+  // The same frame in two repetitions counts as one mismatch.
   wrong.differences.resize(2);
   for (FrameDifference& difference : wrong.differences) difference.frame = 1;
   OpenedResults results = opened({caseOf("sap", 1000, {{30}}), wrong, caseOf("kd", 1000, {{20}})});
@@ -72,7 +72,7 @@ TEST(OpenedResults, PlotTheMedianOfTheRepetitions) {
   result.differences.resize(1);
   result.differences[0].frame = 2;
   OpenedResults results = opened({result, caseOf("sap", 300, {{1}}), caseOf("bf", 200, {})});
-  // At first some of one recording, as far as there are times.
+  // By default, some cases of one recording that have times.
   ASSERT_EQ(results.curves(Phase::total).size(), 1U);
   const OpenedResults::Curve& curve = results.curves(Phase::total)[0];
   EXPECT_EQ(curve.row, 0U);
@@ -108,16 +108,16 @@ TEST(OpenedResults, PlotTheMeanOverNumbersOfBodies) {
   OpenedResults results =
       opened({caseOf("kd", 1000, {{30, 50}, {40}}), caseOf("sap", 100, {{1}}),
               caseOf("kd", 10, {{4}}), caseOf("kd", 100, {{10, 16}}), caseOf("bf", 100, {{9}})});
-  // Neither sap nor bf grows.
+  // sap and bf have one size only.
   EXPECT_THAT(scalingOf(results), ElementsAre("kd/margin=0.5: 10 100 1000"));
   const ScalingCurve& curve = results.scaling(Phase::total)[0];
   EXPECT_DOUBLE_EQ(curve.points[1].seconds, 13e-9);
   EXPECT_DOUBLE_EQ(curve.points[2].seconds, 40e-9);
   EXPECT_EQ(curve.points[2].row, 0U);
-  EXPECT_NEAR(curve.exponent, 0.5, 1e-12);  // 4 to 40 over two decades, whatever lies between
+  EXPECT_NEAR(curve.exponent, 0.5, 1e-12);  // 4 to 40 over two decades
   EXPECT_THAT(scalingOf(results, Phase::upload), ElementsAre());
 
-  // As the list, whose order does not matter.
+  // The curves follow the list's filter, but not its order.
   results.sort("seconds_per_frame", false);
   EXPECT_THAT(scalingOf(results), ElementsAre("kd/margin=0.5: 10 100 1000"));
   results.filter("N100", false);

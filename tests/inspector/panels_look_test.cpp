@@ -1,5 +1,5 @@
-// What every panel looks like, with something of all that it can show: in a large window, and those
-// that have another width in a small one, there in the other theme.
+// Golden pictures of every panel with all kinds of contents: in a large window, and in a small one,
+// with the other theme, for panels with another width there.
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
@@ -23,11 +23,11 @@ namespace {
 
 using scenes::SceneEditor;
 
-/// Panels are flat: what moves, or has another colour, is seen in fewer pixels than in a scene.
+/// Panels are flat: a moved or recoloured part changes fewer pixels than in a scene.
 constexpr double kMaxOfPanel = 0.3;
 
-/// Says that a frame took what a rule makes of its number, and longer where the algorithm's name is
-/// longer: times look the same whenever they are drawn.
+/// Reports frame times computed from the frame's number and the length of the algorithm's name, so
+/// that pictures of times are reproducible.
 std::unique_ptr<CaseExecutor> ruledHost(const Case& test_case, const CancelQuery&) {
   const auto length = static_cast<std::int64_t>(test_case.algorithm.id.size());
   const auto rule = [length](std::uint32_t frame) {
@@ -42,7 +42,7 @@ std::unique_ptr<CaseExecutor> ruledHost(const Case& test_case, const CancelQuery
       test_case, HostOfTimes::Times{.initialize_ns = 1'000'000, .of_frame = rule});
 }
 
-/// Three cases, one of them wrong and one without any time.
+/// Three cases: a correct one, a wrong one, and one without times.
 Results threeCases() {
   Results results;
   results.complete = true;
@@ -56,10 +56,10 @@ Results threeCases() {
   return results;
 }
 
-/// What other machines, or other days, show otherwise.
+/// Widgets with contents that depend on the machine or the date.
 constexpr const char* kVaries[] = {"Batch/threads", "Duel/rounds"};
 
-/// Also what stands beside it, up to `right`: it may be wider or narrower.
+/// Blanks a widget and the area beside it up to `right`, because its width may vary.
 void blank(Picture& picture, const WidgetPlace& place, float right) {
   for (int y = static_cast<int>(place.min.y);
        y < std::min(static_cast<int>(place.max.y), picture.height); ++y) {
@@ -69,7 +69,7 @@ void blank(Picture& picture, const WidgetPlace& place, float right) {
   }
 }
 
-/// The part of a picture in a rectangle.
+/// Crops a picture to a rectangle.
 Picture cropped(const Picture& whole, const ImRect& at) {
   const auto left = static_cast<std::size_t>(at.Min.x);
   const auto top = static_cast<std::size_t>(at.Min.y);
@@ -95,7 +95,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
                   ruledHost),
         session(inspector.session()) {}
 
-  /// Gives every panel something to show. Nothing is drawn meanwhile, which would disturb frames.
+  /// Gives every panel contents. Draws nothing, because drawing would advance the playback.
   void prepare() {
     session.document.start({});
     for (const float x : {0.0F, 3.0F}) {
@@ -109,23 +109,23 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     setParameters(session.draft.scene(), {{"engine", "kinematic"}});
     setParameters(session.draft.scene(), {{"objects", "100"}, {"frames", "40"}});
     session.draft.simulate();
-    session.lanes.add("sap");
-    LaneEdit& parallel = session.lanes.add("bf-simd-mt");
-    parallel.run.isa = Isa::scalar;
-    parallel.run.threads = 2;
-    session.lanes.changed();
+    session.tracks.add("sap");
+    TrackEdit& parallel = session.tracks.add("bf-simd-mt");
+    parallel.test_case.isa = Isa::scalar;
+    parallel.test_case.threads = 2;
+    session.tracks.changed();
     session.playback.goTo(40);
     waitUntilIdle(session);
     session.startDuel(20);
     session.commit();
     session.jobs.get<BackgroundDuel>().wait();
 
-    setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
-    session.lanes.changed();
+    setParameters(*session.tracks.add("faulty").parameters, {{"fat_margin", "0.5"}});
+    session.tracks.changed();
     waitUntilIdle(session);
     session.showSecond(true);
     session.timeline.select(5, 30);
-    session.results.emplace("results.json", threeCases(), session.lanes.algorithms());
+    session.results.emplace("results.json", threeCases(), session.tracks.algorithms());
     waitUntilIdle(session);
     session.notices.wanted_panels.clear();
   }
@@ -134,11 +134,11 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     const auto [width, height] = std::get<Size>(GetParam());
     const Framebuffer target(gl, width, height, 1);
     inspector.session().notices.bringUp(panel.name);
-    // A tab comes to the front, and its tables learn how wide they are.
+    // The first frames raise the tab and compute the widths of its tables.
     for (int i = 0; i < 4; ++i) {
       inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
     }
-    const std::string place(kPlaces.nameOf(panel.place));
+    const std::string place(kDockAreas.nameOf(panel.area));
     const ImRect at = ImGui::FindWindowByName(place.c_str())->Rect();
     Picture whole = target.read();
     for (const std::string name : kVaries) {
@@ -160,8 +160,8 @@ TEST_P(PanelsLook, AsTheyDid) {
   prepare();
   const auto& [size, dark] = GetParam();
   for (const auto& panel : inspector.panels()) {
-    // At the sides it is as wide, but for 3 pixels.
-    if (!dark && panel.place != Place::bottom) continue;
+    // Side panels have the same width in both windows, except for 3 pixels.
+    if (!dark && panel.area != DockArea::bottom) continue;
     const std::string name = fmt::format("{}-{}x{}-{}.png", panel.name, size.first, size.second,
                                          dark ? "dark" : "light");
     EXPECT_TRUE(looksLikeGolden(

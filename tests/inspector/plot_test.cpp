@@ -31,7 +31,7 @@ TEST(Plot, TicksAreRoundAndWithinTheAxis) {
           EXPECT_GE(tick, low);
           EXPECT_LE(tick, high * (1 + 1e-12));
         }
-        // Steps of 1, 2 or 5 times a power of ten; powers of ten with 2 and 5 between them.
+        // Linear steps and logarithmic ticks are 1, 2 or 5 times a power of ten.
         for (std::size_t i = 0; i < ticks.size(); ++i) {
           if (!logarithmic && i == 0) continue;
           const double round = logarithmic ? ticks[i] : ticks[i] - ticks[i - 1];
@@ -55,7 +55,7 @@ TEST(Plot, BlocksAreNoWiderThanAPixelAndNoNarrowerThanHalf) {
   }
 }
 
-// Against looking at every frame, whatever the order in which they become known.
+// Compared with a linear search, for values set in random order.
 TEST(FrameValues, KnowsLowestHighestAndFirstOfAnyFrames) {
   for (const std::uint32_t frames : {1U, 2U, 5U, 64U, 1000U}) {
     std::mt19937 engine(frames);
@@ -88,7 +88,7 @@ TEST(FrameValues, KnowsLowestHighestAndFirstOfAnyFrames) {
   }
 }
 
-// A plot of 800 pixels shows each of the few marks among many frames, in a block of its own width.
+// A plot of 800 pixels shows each of a few marks among many frames, in a block of its own.
 TEST(FrameValues, ThinningLosesNoMark) {
   constexpr std::uint32_t kFrames = 100'000;
   FrameValues marks;

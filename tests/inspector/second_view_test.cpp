@@ -1,4 +1,4 @@
-// What two views show beside each other, and what they tell apart.
+// Two views side by side, and the comparison of their answers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "inspector/helpers.h"
 #include "inspector/run/run_thread.h"
-#include "inspector/session/lane_statistics.h"
+#include "inspector/session/track_statistics.h"
 
 namespace broadmark::tests {
 namespace {
@@ -25,19 +25,19 @@ TEST(ComparePairs, TellsWhoHasWhat) {
   EXPECT_EQ(comparePairs(first, {}).both, 0U);
 }
 
-LaneReport laneOf(const std::vector<std::int64_t>& nanoseconds) {
-  LaneReport lane;
+TrackReport trackOf(const std::vector<std::int64_t>& nanoseconds) {
+  TrackReport track;
   for (const std::int64_t ns : nanoseconds) {
-    FrameRecord& record = lane.frames.emplace_back();
+    FrameRecord& record = track.frames.emplace_back();
     record.run = ns > 0;
     record.times[Phase::total] = ns;
   }
-  return lane;
+  return track;
 }
 
 TEST(TimeRatios, AreOfFramesThatBothHaveRunUndisturbed) {
-  LaneReport first = laneOf({10, 30, 0, 40, 99, 7});
-  const LaneReport second = laneOf({20, 10, 50, 40, 1});
+  TrackReport first = trackOf({10, 30, 0, 40, 99, 7});
+  const TrackReport second = trackOf({20, 10, 50, 40, 1});
   first.frames[4].disturbed = true;
   const TimeRatios ratios = ratiosOf(first, second);
   EXPECT_FLOAT_EQ(ratios.ratios.at(1), 0.5F);
@@ -49,7 +49,7 @@ TEST(TimeRatios, AreOfFramesThatBothHaveRunUndisturbed) {
   EXPECT_DOUBLE_EQ(ratios.median, 1);
   EXPECT_EQ(ratios.highest->frame, 2U);
   EXPECT_EQ(ratios.lowest->frame, 1U);
-  EXPECT_FALSE(ratiosOf(first, laneOf({})).highest);
+  EXPECT_FALSE(ratiosOf(first, trackOf({})).highest);
 }
 
 class SecondViewTest : public testing::Test {
@@ -58,9 +58,9 @@ class SecondViewTest : public testing::Test {
     setParameters(session.draft.scene(),
                   {{"objects", "60"}, {"frames", "20"}, {"engine", "kinematic"}});
     session.draft.simulate();
-    faulty = session.lanes.add("faulty-extra").number;
-    sap = session.lanes.add("sap").number;
-    session.lanes.show(faulty);
+    faulty = session.tracks.add("faulty-extra").number;
+    sap = session.tracks.add("sap").number;
+    session.tracks.show(faulty);
     session.mismatches.stop_at_mismatch = false;
     session.playback.goTo(12);
     waitUntilIdle(session);
@@ -81,8 +81,8 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
   session.showSecond(true);
   const RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.second);
-  EXPECT_EQ(seen.second->lane, sap);
-  EXPECT_EQ(seen.snapshot->lane, faulty);
+  EXPECT_EQ(seen.second->track, sap);
+  EXPECT_EQ(seen.snapshot->track, faulty);
   EXPECT_EQ(seen.second->frame, 12U);
   EXPECT_EQ(*seen.second->boxes, *seen.snapshot->boxes);
   ASSERT_TRUE(seen.comparison);
@@ -91,11 +91,11 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
   EXPECT_EQ(seen.comparison->first_only.size(),
             seen.snapshot->pairs.size() - seen.second->pairs.size());
 
-  // It follows the first one.
+  // The second view follows the first.
   session.playback.goTo(15);
   EXPECT_EQ(waitUntilIdle(session).second->frame, 15U);
-  session.lanes.remove(sap);
-  EXPECT_EQ(waitUntilIdle(session).second->lane, 0);
+  session.tracks.remove(sap);
+  EXPECT_EQ(waitUntilIdle(session).second->track, 0);
   session.showSecond(false);
   const RunProgress alone = waitUntilIdle(session);
   EXPECT_EQ(alone.second, nullptr);
@@ -103,26 +103,26 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
 }
 
 TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
-  session.second = SecondViewRequest{.footage = nullptr, .frame = 5, .lane = sap};
+  session.second = SecondViewRequest{.source = nullptr, .frame = 5, .track = sap};
   RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->frame, 5U);
-  EXPECT_EQ(seen.second->lane, sap);
+  EXPECT_EQ(seen.second->track, sap);
   EXPECT_TRUE(seen.second->checked);
   EXPECT_FALSE(seen.second->difference.isMismatch());
   EXPECT_EQ(seen.second->right_pairs, rightPairs(*seen.second).size());
   EXPECT_EQ(seen.snapshot->frame, 12U);
   EXPECT_NE(*seen.second->boxes, *seen.snapshot->boxes);
-  // The lanes have not run anew for that.
-  for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.frame, 12U);
+  // The tracks have not been rerun.
+  for (const TrackReport& track : seen.tracks) EXPECT_EQ(track.frame, 12U);
 
-  // Later than the first view's: it is simulated as far as that.
+  // A frame after the first view's: the scene is simulated up to it.
   session.second->frame = 18;
   seen = waitUntilIdle(session);
   EXPECT_EQ(seen.second->frame, 18U);
-  EXPECT_EQ(seen.second->lane, sap);
+  EXPECT_EQ(seen.second->track, sap);
   EXPECT_EQ(seen.snapshot->frame, 12U);
-  // Back again, by a fresh instance; and where both are at the same frame.
+  // Earlier frames need a new instance; also the first view's frame, and frames past the end.
   for (const std::uint32_t frame : {3U, 12U, 0U, 99U}) {
     session.second->frame = frame;
     seen = waitUntilIdle(session);
@@ -133,18 +133,18 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
 
 TEST_F(SecondViewTest, AnotherRecording) {
   const std::filesystem::path other = vanishingBodies(directory, 40);
-  session.lanes.show(sap);  // it copes with bodies that vanish
+  session.tracks.show(sap);  // sap supports vanishing bodies
   session.showBeside(other);
   RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(seen.second);
-  EXPECT_EQ(seen.second->footage->title, other.filename());
+  EXPECT_EQ(seen.second->source->title, other.filename());
   EXPECT_EQ(seen.second->frame, 12U);
   EXPECT_EQ(seen.second->present, 28U);
-  EXPECT_EQ(seen.second->lane, sap);
-  EXPECT_EQ(seen.snapshot->footage, session.playback.footage());
+  EXPECT_EQ(seen.second->track, sap);
+  EXPECT_EQ(seen.snapshot->source, session.playback.source());
 
-  // It stays when something else is opened beside it.
+  // The second view remains when the first opens another source.
   session.draft.simulate();
   session.playback.goTo(2);
   seen = waitUntilIdle(session);
@@ -158,7 +158,7 @@ TEST_F(SecondViewTest, WhatCannotBeOpenedSaysWhy) {
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_FALSE(session.second);
 
-  // It vanishes before it is opened.
+  // The file is removed before it is opened.
   const std::filesystem::path other = vanishingBodies(directory, 40);
   session.showBeside(other);
   std::filesystem::remove(other);

@@ -1,4 +1,4 @@
-// The session and its run thread, without any drawing.
+// The session and its run thread, without drawing.
 #include "inspector/session/session.h"
 
 #include <gmock/gmock.h>
@@ -23,12 +23,12 @@ class SessionTest : public testing::Test {
 
   RunProgress waitUntilIdle() { return tests::waitUntilIdle(session); }
 
-  /// Lets pictures pass until the playback ends, or `most` have.
+  /// Draws up to `most` frames, until the playback ends.
   void playOn(int most = 2000) {
     for (int picture = 0; picture < most && session.playback.playing(); ++picture) {
       session.commit();
       session.runs.waitUntilIdle(kForever);
-      session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
+      session.runs.readProgress([&](const RunProgress& progress) { session.advance(progress, 1); });
     }
   }
 
@@ -54,14 +54,15 @@ TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
 TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
   session.draft.simulate();
   for (const Algorithm& algorithm : builtinAlgorithms()) {
-    if (!algorithm.traits.on_device) session.lanes.add(algorithm.id);
+    if (!algorithm.traits.on_device) session.tracks.add(algorithm.id);
   }
   session.playback.seek(5);
   const RunProgress seen = waitUntilIdle();
-  EXPECT_EQ(seen.lanes.size(), session.lanes.list.size());
-  for (const LaneReport& lane : seen.lanes) {
-    EXPECT_EQ(lane.status, Status::ok) << lane.spec.run.algorithm.id << ": " << lane.reason;
-    EXPECT_EQ(lane.frame, 5U) << lane.spec.run.algorithm.id;
+  EXPECT_EQ(seen.tracks.size(), session.tracks.list.size());
+  for (const TrackReport& track : seen.tracks) {
+    EXPECT_EQ(track.status, Status::ok)
+        << track.spec.test_case.algorithm.id << ": " << track.reason;
+    EXPECT_EQ(track.frame, 5U) << track.spec.test_case.algorithm.id;
   }
 }
 
@@ -83,18 +84,18 @@ TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
   setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
   session.draft.choose("brownian");
   session.draft.simulate();
-  const int faulty = session.lanes.add("faulty").number;
-  session.lanes.add("bf");
+  const int faulty = session.tracks.add("faulty").number;
+  session.tracks.add("bf");
   session.playback.seek(300);
   const RunProgress seen = waitUntilIdle();
   ASSERT_TRUE(seen.stop) << "the fault did not show";
-  EXPECT_EQ(seen.stop->lane, faulty);
+  EXPECT_EQ(seen.stop->track, faulty);
   EXPECT_EQ(session.playback.frame(), seen.stop->frame);
   EXPECT_EQ(seen.snapshot->frame, seen.stop->frame);
-  EXPECT_EQ(seen.snapshot->lane, faulty);
+  EXPECT_EQ(seen.snapshot->track, faulty);
   ASSERT_TRUE(seen.snapshot->checked);
   EXPECT_GT(seen.snapshot->difference.missed_count, 0U);
-  EXPECT_EQ(seen.lanes[1].frame, seen.stop->frame);
+  EXPECT_EQ(seen.tracks[1].frame, seen.stop->frame);
   EXPECT_EQ(session.notices.wanted_panels, std::vector<std::string>{"Mismatches"});
   session.playback.step(1);
   const RunProgress later = waitUntilIdle();
@@ -107,16 +108,16 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
   session.draft.choose("brownian");
   session.mismatches.check = false;
   session.draft.simulate();
-  session.lanes.add("faulty");
+  session.tracks.add("faulty");
   session.playback.seek(300);
   const RunProgress unchecked = waitUntilIdle();
   EXPECT_FALSE(unchecked.stop);
   EXPECT_EQ(session.playback.frame(), 300U);
-  ASSERT_EQ(unchecked.lanes.size(), 1U);
-  EXPECT_EQ(unchecked.lanes[0].frame, 300U);
-  EXPECT_EQ(unchecked.lanes[0].status, Status::ok);
-  EXPECT_TRUE(std::ranges::none_of(unchecked.lanes[0].frames, &FrameRecord::checked));
-  // The same, checked.
+  ASSERT_EQ(unchecked.tracks.size(), 1U);
+  EXPECT_EQ(unchecked.tracks[0].frame, 300U);
+  EXPECT_EQ(unchecked.tracks[0].status, Status::ok);
+  EXPECT_TRUE(std::ranges::none_of(unchecked.tracks[0].frames, &FrameRecord::checked));
+  // The same with the check of answers.
   session.mismatches.check = true;
   session.draft.simulate();
   session.playback.seek(300);
@@ -124,7 +125,7 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
   ASSERT_TRUE(checked.stop) << "the fault did not show";
   EXPECT_EQ(session.playback.frame(), checked.stop->frame);
   EXPECT_LT(checked.stop->frame, 300U);
-  EXPECT_EQ(checked.lanes[0].status, Status::mismatch);
+  EXPECT_EQ(checked.tracks[0].status, Status::mismatch);
 }
 
 TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
@@ -136,7 +137,7 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
   EXPECT_TRUE(session.notices.errors.empty());
   session.open(directory / "some.aabbs");
   session.playback.seek(4);
-  waitUntilIdle();  // now its length is known
+  waitUntilIdle();  // now the length is known
   session.playback.seek(4);
   const RunProgress saved = waitUntilIdle();
   EXPECT_EQ(saved.scene.frames, 4U);
@@ -147,11 +148,11 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
 TEST_F(SessionTest, ABadFileIsAnErrorAndChangesNothing) {
   session.draft.simulate();
   waitUntilIdle();
-  const auto before = session.playback.footage();
+  const auto before = session.playback.source();
   session.open(directory / "missing.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("missing.aabbs"));
-  EXPECT_EQ(session.playback.footage(), before);
+  EXPECT_EQ(session.playback.source(), before);
 }
 
 TEST_F(SessionTest, AFileOfSceneParametersBecomesTheDraft) {
@@ -172,17 +173,17 @@ TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
   writeTextFile(
       directory / "settings.json",
       R"({"m_inputScene": "some.aabbs", "m_outputLog": "log.json", "m_algorithm": "SAP"})");
-  session.lanes.add("bf");
+  session.tracks.add("bf");
   session.open(directory / "settings.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.scene.frames, 4U);
-  ASSERT_EQ(seen.lanes.size(), 1U);
-  EXPECT_EQ(seen.lanes[0].spec.run.algorithm.id, "sap");
+  ASSERT_EQ(seen.tracks.size(), 1U);
+  EXPECT_EQ(seen.tracks[0].spec.test_case.algorithm.id, "sap");
 }
 
 TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
-  Plan plan{.algorithms = session.lanes.algorithms()};
+  Plan plan{.algorithms = session.tracks.algorithms()};
   plan.entries = openSource("freefall", {.algorithms = plan.algorithms}).entries;
   const Algorithm& sap = *std::ranges::find(plan.algorithms, "sap", &Algorithm::id);
   plan.entries[0].cases = {Case{.algorithm = sap}};
@@ -190,54 +191,54 @@ TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
   session.playback.seek(2);
   const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.scene.name, "FreeFall");
-  ASSERT_EQ(seen.lanes.size(), 1U);
-  EXPECT_EQ(seen.lanes[0].frame, 2U);
+  ASSERT_EQ(seen.tracks.size(), 1U);
+  EXPECT_EQ(seen.tracks[0].frame, 2U);
 }
 
 TEST_F(SessionTest, TwoThatShareOneStateAreRightSideBySide) {
   setParameters(session.draft.scene(), {{"objects", "200"}});
   session.draft.simulate();
   for (const char* margin : {"0.01", "0.7"}) {
-    setParameters(*session.lanes.add("dbvt-d").parameters, {{"margin", margin}});
+    setParameters(*session.tracks.add("dbvt-d").parameters, {{"margin", margin}});
   }
-  session.lanes.add("dbvt-f");
-  session.lanes.changed();
+  session.tracks.add("dbvt-f");
+  session.tracks.changed();
   session.playback.seek(40);
   const RunProgress seen = waitUntilIdle();
-  ASSERT_EQ(seen.lanes.size(), 3U);
-  for (const LaneReport& lane : seen.lanes) {
-    EXPECT_EQ(lane.status, Status::ok) << lane.reason;
-    EXPECT_EQ(lane.frame, 40U);
-    EXPECT_TRUE(std::ranges::all_of(lane.frames, &FrameRecord::checked));
+  ASSERT_EQ(seen.tracks.size(), 3U);
+  for (const TrackReport& track : seen.tracks) {
+    EXPECT_EQ(track.status, Status::ok) << track.reason;
+    EXPECT_EQ(track.frame, 40U);
+    EXPECT_TRUE(std::ranges::all_of(track.frames, &FrameRecord::checked));
   }
-  EXPECT_LT(seen.lanes[0].margin, seen.lanes[1].margin);
+  EXPECT_LT(seen.tracks[0].margin, seen.tracks[1].margin);
 }
 
 TEST_F(SessionTest, ALaneThatCannotRunTellsWhyAndLeavesTheOthersAlone) {
-  Algorithm small = session.lanes.algorithms().front();
+  Algorithm small = session.tracks.algorithms().front();
   small.traits.max_objects = 10;
   session.draft.simulate();
-  session.lanes.add(Case{.algorithm = small});
-  session.lanes.add("sap");
+  session.tracks.add(Case{.algorithm = small});
+  session.tracks.add("sap");
   session.playback.seek(3);
   const RunProgress seen = waitUntilIdle();
-  EXPECT_EQ(seen.lanes[0].status, Status::unsupported);
-  EXPECT_TRUE(seen.lanes[0].ended);
-  EXPECT_THAT(seen.lanes[0].reason, testing::HasSubstr("10"));
-  EXPECT_EQ(seen.lanes[1].frame, 3U);
+  EXPECT_EQ(seen.tracks[0].status, Status::unsupported);
+  EXPECT_TRUE(seen.tracks[0].ended);
+  EXPECT_THAT(seen.tracks[0].reason, testing::HasSubstr("10"));
+  EXPECT_EQ(seen.tracks[1].frame, 3U);
 }
 
 TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
   session.draft.simulate();
-  session.lanes.add("grid-bf");
+  session.tracks.add("grid-bf");
   session.playback.seek(3);
   waitUntilIdle();
-  LaneEdit& lane = session.lanes.list.front();
-  setParameters(*lane.parameters, {{"objects_per_cell", "3"}});
-  session.lanes.changed();
+  TrackEdit& track = session.tracks.list.front();
+  setParameters(*track.parameters, {{"objects_per_cell", "3"}});
+  session.tracks.changed();
   const RunProgress seen = waitUntilIdle();
-  EXPECT_EQ(seen.lanes[0].spec.run.parameters.at("objects_per_cell"), "3");
-  EXPECT_EQ(seen.lanes[0].frame, 3U);
+  EXPECT_EQ(seen.tracks[0].spec.test_case.parameters.at("objects_per_cell"), "3");
+  EXPECT_EQ(seen.tracks[0].frame, 3U);
 }
 
 TEST_F(SessionTest, TracksFollowBodiesBackwards) {
@@ -246,18 +247,18 @@ TEST_F(SessionTest, TracksFollowBodiesBackwards) {
   waitUntilIdle();
   session.selection.select({5, 2});
   const RunProgress seen = waitUntilIdle();
-  ASSERT_EQ(seen.snapshot->tracks.size(), 2U);
-  EXPECT_EQ(seen.snapshot->tracks[0].body, 2U);
-  EXPECT_EQ(seen.snapshot->tracks[0].boxes.size(), 10U);
-  EXPECT_EQ(seen.snapshot->tracks[1].boxes.back(), (*seen.snapshot->boxes)[5]);
+  ASSERT_EQ(seen.snapshot->trails.size(), 2U);
+  EXPECT_EQ(seen.snapshot->trails[0].body, 2U);
+  EXPECT_EQ(seen.snapshot->trails[0].boxes.size(), 10U);
+  EXPECT_EQ(seen.snapshot->trails[1].boxes.back(), (*seen.snapshot->boxes)[5]);
 }
 
 TEST_F(SessionTest, TheTableOfFramesHasALinePerLaneAndFrame) {
   session.draft.simulate();
-  session.lanes.add("sap");
-  session.lanes.add("bf");
+  session.tracks.add("sap");
+  session.tracks.add("bf");
   session.playback.seek(3);
-  const std::string table = formatFrameTable(session.playback.scene(), waitUntilIdle().lanes);
+  const std::string table = formatFrameTable(session.playback.scene(), waitUntilIdle().tracks);
   EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * 3);
   EXPECT_THAT(table, testing::HasSubstr(",sap,SAP,scalar,1,,1,3,"));
   EXPECT_THAT(table,
@@ -279,13 +280,13 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
   EXPECT_THAT(seen.snapshot->pairs, testing::UnorderedElementsAreArray(
                                         bruteForcePairs(*seen.snapshot->boxes, seen.scene.filter)));
   EXPECT_LT(seen.snapshot->pairs.size(), bruteForcePairs(*seen.snapshot->boxes).size());
-  // How many there are is known of the frames that have been looked at.
+  // The population is known for the simulated frames only.
   ASSERT_EQ(seen.population.size(), 11U);
   EXPECT_TRUE(std::isnan(seen.population.at(5)));
-  session.lanes.add("kd");
-  session.lanes.add("sap");
+  session.tracks.add("kd");
+  session.tracks.add("sap");
   seen = waitUntilIdle();
-  for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.status, Status::ok) << lane.reason;
+  for (const TrackReport& track : seen.tracks) EXPECT_EQ(track.status, Status::ok) << track.reason;
   for (std::uint32_t frame = 1; frame <= 10; ++frame) {
     EXPECT_EQ(seen.population.at(frame), 60 - frame);
   }
@@ -299,22 +300,23 @@ TEST_F(SessionTest, WithoutChangesThereIsNoPopulation) {
 
 TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
   session.draft.simulate();
-  session.lanes.add("sap");
+  session.tracks.add("sap");
   for (int i = 0; i < 200; ++i) {
     session.playback.seek((i * 7) % 41);
     if (i % 31 == 0) session.draft.simulate();
-    if (i % 17 == 0) session.lanes.add(i % 2 == 0 ? "bf" : "kd");
-    if (i % 23 == 0 && !session.lanes.list.empty())
-      session.lanes.remove(session.lanes.list.front().number);
+    if (i % 17 == 0) session.tracks.add(i % 2 == 0 ? "bf" : "kd");
+    if (i % 23 == 0 && !session.tracks.list.empty())
+      session.tracks.remove(session.tracks.list.front().number);
     session.commit();
-    session.runs.look([&](const RunProgress& progress) { session.advance(progress, 0.01); });
+    session.runs.readProgress(
+        [&](const RunProgress& progress) { session.advance(progress, 0.01); });
   }
   session.playback.seek(11);
   waitUntilIdle();
   session.playback.seek(11);
   const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.snapshot->frame, 11U);
-  EXPECT_EQ(seen.lanes.size(), session.lanes.list.size());
+  EXPECT_EQ(seen.tracks.size(), session.tracks.list.size());
 }
 
 }  // namespace

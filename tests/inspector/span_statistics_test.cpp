@@ -1,5 +1,5 @@
-// What an algorithm took in a span of frames.
-#include "inspector/session/lane_statistics.h"
+// Statistics of an algorithm's times in a span of frames.
+#include "inspector/session/track_statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Lists as they are typed.
+// Lists typed as text.
 #include "inspector/session/text_lists.h"
 
 #include <gmock/gmock.h>

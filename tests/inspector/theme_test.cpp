@@ -1,4 +1,4 @@
-// Whether texts can be read, and curves be told apart.
+// Texts are readable, and curves are distinguishable.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -30,7 +30,7 @@ class ThemeTest : public testing::TestWithParam<bool> {
   Ui ui;
 };
 
-/// What text stands on: all that is opaque.
+/// The opaque backgrounds of text.
 constexpr std::array kGrounds = {
     ImGuiCol_WindowBg,       ImGuiCol_PopupBg,       ImGuiCol_MenuBarBg,     ImGuiCol_FrameBg,
     ImGuiCol_FrameBgHovered, ImGuiCol_Button,        ImGuiCol_ButtonHovered, ImGuiCol_Header,

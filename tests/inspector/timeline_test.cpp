@@ -1,4 +1,4 @@
-// What the timeline shows of a recording.
+// The section of the recording that the timeline shows.
 #include "inspector/session/timeline.h"
 
 #include <gtest/gtest.h>
@@ -8,15 +8,15 @@ namespace {
 
 class TimelineTest : public testing::Test {
  protected:
-  TimelineTest() { timeline.follow(footage, 1000, 0); }
+  TimelineTest() { timeline.follow(source, 1000, 0); }
 
-  void playTo(std::uint32_t frame) { timeline.follow(footage, 1000, frame); }
+  void playTo(std::uint32_t frame) { timeline.follow(source, 1000, frame); }
   [[nodiscard]] bool isInSight(double frame) const {
     return frame >= timeline.first() && frame <= timeline.last();
   }
 
   Timeline timeline;
-  std::shared_ptr<const FrameProviderRequest> footage = std::make_shared<FrameProviderRequest>();
+  std::shared_ptr<const FrameProviderRequest> source = std::make_shared<FrameProviderRequest>();
 };
 
 TEST_F(TimelineTest, ShowsTheWholeRecordingAtFirst) {
@@ -48,7 +48,7 @@ TEST_F(TimelineTest, FollowsThePlayhead) {
     EXPECT_TRUE(isInSight(frame)) << frame;
     EXPECT_NEAR(timeline.last() - timeline.first(), extent, 1e-9);
   }
-  // Whoever looks elsewhere is left there until the playhead moves.
+  // A section chosen by the user stays until the playhead moves.
   timeline.move(-500);
   playTo(999);
   EXPECT_FALSE(isInSight(999));
@@ -77,7 +77,7 @@ TEST_F(TimelineTest, ZoomAndSpanBelongToTheFootage) {
   EXPECT_FALSE(timeline.zoomed());
   EXPECT_EQ(timeline.last(), 60);
   EXPECT_FALSE(timeline.span());
-  timeline.follow(footage, 1000, 7);
+  timeline.follow(source, 1000, 7);
   EXPECT_FALSE(timeline.zoomed());
   EXPECT_EQ(timeline.last(), 1000);
 }

@@ -1,5 +1,5 @@
-// Lanes, an export and a bake at the same time, all of which use Bullet's tree margin. What
-// ThreadSanitizer is to see, too: small scenes.
+// Tracks, an export and a bake that use Bullet's tree margin at the same time. The scenes are
+// small, because ThreadSanitizer runs this test, too.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace broadmark::tests {
 namespace {
 
-/// Works as another algorithm does, but reports no pairs.
+/// Runs another algorithm, but reports no pairs.
 class Silent final : public BroadPhase {
  public:
   explicit Silent(std::unique_ptr<BroadPhase> inner) : inner_(std::move(inner)) {}
@@ -68,11 +68,11 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   session.draft.simulate();
   const Case faulty{.algorithm = faultyTree()};
   ASSERT_EQ(faulty.algorithm.traits.exclusive, kBulletTreeMargin);
-  session.lanes.add(faulty);
+  session.tracks.add(faulty);
   for (const char* margin : {"0.01", "0.7"}) {
-    setParameters(*session.lanes.add("dbvt-d").parameters, {{"margin", margin}});
+    setParameters(*session.tracks.add("dbvt-d").parameters, {{"margin", margin}});
   }
-  session.lanes.changed();
+  session.tracks.changed();
   session.mismatches.stop_at_mismatch = false;
   session.playback.seek(10);
   const RunProgress seen = waitUntilIdle(session);
@@ -91,9 +91,9 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   session.jobs.get<BackgroundBake>().wait();
   session.jobs.get<CaseExport>().wait();
 
-  EXPECT_EQ(last.lanes[0].status, Status::mismatch);
-  for (const std::size_t lane : {1U, 2U}) {
-    EXPECT_EQ(last.lanes[lane].status, Status::ok) << last.lanes[lane].reason;
+  EXPECT_EQ(last.tracks[0].status, Status::mismatch);
+  for (const std::size_t track : {1U, 2U}) {
+    EXPECT_EQ(last.tracks[track].status, Status::ok) << last.tracks[track].reason;
   }
   const CaseExport::Report exported = session.jobs.get<CaseExport>().report();
   EXPECT_EQ(exported.state, TaskState::done) << exported.failure;

@@ -1,4 +1,4 @@
-// What is told of a wrong pair.
+// The explanation of a wrong pair.
 #include "inspector/session/wrong_pair.h"
 
 #include <gmock/gmock.h>
@@ -13,24 +13,24 @@
 namespace broadmark::tests {
 namespace {
 
-using Kind = AxisRelation::Kind;
+using Type = AxisRelation::Type;
 
 Aabb box(float min, float max) { return {{min, 0, 0, 0}, {max, 1, 1, 0}}; }
 
 TEST(AxisRelations, TellOverlapTouchAndGap) {
-  EXPECT_EQ(relationOn(0, box(0, 2), box(1, 3)).kind, Kind::overlap);
+  EXPECT_EQ(relationOn(0, box(0, 2), box(1, 3)).type, Type::overlap);
   EXPECT_EQ(relationOn(0, box(0, 2), box(1, 3)).gap, -1);
-  EXPECT_EQ(relationOn(0, box(0, 2), box(2, 3)).kind, Kind::touch);
-  EXPECT_EQ(relationOn(0, box(4, 5), box(2, 3)).kind, Kind::gap);
+  EXPECT_EQ(relationOn(0, box(0, 2), box(2, 3)).type, Type::touch);
+  EXPECT_EQ(relationOn(0, box(4, 5), box(2, 3)).type, Type::gap);
   EXPECT_EQ(relationOn(0, box(4, 5), box(2, 3)).gap, 1);
 }
 
 TEST(AxisRelations, NeighbouringFloatsDoNotTouch) {
   const float high = std::nextafter(1e-30F, 1.0F);
-  EXPECT_EQ(relationOn(0, box(0, 1e-30F), box(high, 1)).kind, Kind::gap);
-  EXPECT_EQ(relationOn(0, box(0, high), box(1e-30F, 1)).kind, Kind::overlap);
+  EXPECT_EQ(relationOn(0, box(0, 1e-30F), box(high, 1)).type, Type::gap);
+  EXPECT_EQ(relationOn(0, box(0, high), box(1e-30F, 1)).type, Type::overlap);
   const float tiny = std::numeric_limits<float>::denorm_min();
-  EXPECT_EQ(relationOn(0, box(-1, 0), box(tiny, 1)).kind, Kind::gap);
+  EXPECT_EQ(relationOn(0, box(-1, 0), box(tiny, 1)).type, Type::gap);
 }
 
 TEST(AxisRelations, AgreeWithTheDefinitionOfOverlap) {
@@ -41,17 +41,17 @@ TEST(AxisRelations, AgreeWithTheDefinitionOfOverlap) {
     Aabb a;
     Aabb b;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (Aabb* one : {&a, &b}) {
-        one->min[axis] = static_cast<float>(place(random)) / 3;
-        one->max[axis] = one->min[axis] + static_cast<float>(place(random)) / 3;
+      for (Aabb* aabb : {&a, &b}) {
+        aabb->min[axis] = static_cast<float>(place(random)) / 3;
+        aabb->max[axis] = aabb->min[axis] + static_cast<float>(place(random)) / 3;
       }
     }
     bool apart = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      apart = apart || relationOn(axis, a, b).kind == Kind::gap;
+      apart = apart || relationOn(axis, a, b).type == Type::gap;
     }
     ASSERT_EQ(!apart, overlaps(a, b));
-    ASSERT_EQ(relationOn(decidingAxis(a, b), a, b).kind == Kind::gap, apart);
+    ASSERT_EQ(relationOn(decidingAxis(a, b), a, b).type == Type::gap, apart);
     overlapping += apart ? 0 : 1;
   }
   EXPECT_GT(overlapping, 100);
@@ -78,26 +78,26 @@ TEST(WrongPairs, StandByKindAndAllowedOnesLast) {
 }
 
 TEST(PairTracks, TellSinceWhenTheyOverlap) {
-  const Track still{.body = 1, .first = 10, .boxes = std::vector<Aabb>(5, box(0, 1))};
-  Track other{.body = 2, .first = 10, .boxes = {box(0, 1), box(4, 5), box(3, 4)}};
+  const Trail still{.body = 1, .first = 10, .boxes = std::vector<Aabb>(5, box(0, 1))};
+  Trail other{.body = 2, .first = 10, .boxes = {box(0, 1), box(4, 5), box(3, 4)}};
   other.boxes.push_back(box(1, 2));
   other.boxes.push_back(box(1, 2));
-  EXPECT_EQ((PairTrack{still, other}.overlapBegan()), 13U);
+  EXPECT_EQ((PairTrails{still, other}.overlapBegan()), 13U);
   EXPECT_FALSE(movedAt(other, 0));
   EXPECT_TRUE(movedAt(other, 3));
   EXPECT_FALSE(movedAt(other, 4));
   other.boxes.back() = box(7, 8);
-  EXPECT_EQ((PairTrack{still, other}.overlapBegan()), std::nullopt);
-  EXPECT_EQ((PairTrack{still, still}.overlapBegan()), 10U);
+  EXPECT_EQ((PairTrails{still, other}.overlapBegan()), std::nullopt);
+  EXPECT_EQ((PairTrails{still, still}.overlapBegan()), 10U);
 }
 
 TEST(PairTracks, TellSinceWhenABodyIsAbsent) {
-  Track track{.body = 1, .first = 10, .boxes = {box(0, 1), kEmptyBox, kEmptyBox}};
-  EXPECT_EQ(absenceText(track), "absent: vanished in frame 11");
-  track.boxes.front() = kEmptyBox;
-  EXPECT_EQ(absenceText(track), "absent since frame 10 or earlier");
-  track.first = 0;
-  EXPECT_EQ(absenceText(track), "absent since frame 0");
+  Trail trail{.body = 1, .first = 10, .boxes = {box(0, 1), kEmptyBox, kEmptyBox}};
+  EXPECT_EQ(absenceText(trail), "absent: vanished in frame 11");
+  trail.boxes.front() = kEmptyBox;
+  EXPECT_EQ(absenceText(trail), "absent since frame 10 or earlier");
+  trail.first = 0;
+  EXPECT_EQ(absenceText(trail), "absent since frame 0");
 }
 
 TEST(UnwantedPairs, TellWhy) {
@@ -116,18 +116,18 @@ TEST(UnwantedPairs, TellWhy) {
 }
 
 TEST(KnownMismatches, TheNextOfAnyLane) {
-  std::vector<LaneReport> lanes(2);
-  for (LaneReport& lane : lanes) {
-    lane.spec.number = static_cast<int>(&lane - lanes.data()) + 1;
-    lane.frames.resize(9);
+  std::vector<TrackReport> tracks(2);
+  for (TrackReport& track : tracks) {
+    track.spec.number = static_cast<int>(&track - tracks.data()) + 1;
+    track.frames.resize(9);
   }
-  EXPECT_FALSE(nextKnownMismatch(lanes, 0));
-  lanes[0].frames[7].mismatch = true;  // frame 8
-  lanes[1].frames[3].mismatch = true;
-  EXPECT_EQ(nextKnownMismatch(lanes, 0)->frame, 4U);
-  EXPECT_EQ(nextKnownMismatch(lanes, 0)->lane, 2);
-  EXPECT_EQ(nextKnownMismatch(lanes, 4)->frame, 8U);
-  EXPECT_FALSE(nextKnownMismatch(lanes, 8));
+  EXPECT_FALSE(nextKnownMismatch(tracks, 0));
+  tracks[0].frames[7].mismatch = true;  // frame 8
+  tracks[1].frames[3].mismatch = true;
+  EXPECT_EQ(nextKnownMismatch(tracks, 0)->frame, 4U);
+  EXPECT_EQ(nextKnownMismatch(tracks, 0)->track, 2);
+  EXPECT_EQ(nextKnownMismatch(tracks, 4)->frame, 8U);
+  EXPECT_FALSE(nextKnownMismatch(tracks, 8));
 }
 
 }  // namespace

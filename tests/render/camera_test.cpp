@@ -16,7 +16,7 @@ Aabb cubeAt(float centre, float side) {
   return {{low, low, low}, {high, high, high}};
 }
 
-/// The eight corners of a box on the screen; fails the test for one that is not before the eye.
+/// The eight corners of a box on the screen; fails the test if a corner is behind the eye.
 std::vector<std::array<float, 3>> projectedCorners(const Camera& camera, const Aabb& box) {
   std::vector<std::array<float, 3>> corners;
   for (unsigned i = 0; i < 8; ++i) {
@@ -36,7 +36,7 @@ TEST(ViewSpace, CentresTheBoxAndMakesItsLongestEdgeOne) {
 }
 
 TEST(ViewSpace, KeepsItsPrecisionFarFromTheOrigin) {
-  // A float holds steps of 1 at 1e7, and view space must still tell them apart exactly.
+  // A float resolves steps of 1 at 1e7, and view space must preserve them exactly.
   const ViewSpace space = viewSpaceOf({{1e7F, 0, 0}, {1e7F + 8, 8, 8}});
   EXPECT_FLOAT_EQ(space.toView(std::array{1e7F + 5, 4.0F, 4.0F, 0.0F})[0], 0.125F);
 }
@@ -65,7 +65,7 @@ TEST(ShownBox, IsTheWorldWhenBodiesAreInIt) {
 TEST(ShownBox, HoldsTheBodiesWhenTheWorldDoesNot) {
   const std::vector<Aabb> boxes = {cubeAt(20, 2), cubeAt(30, 2), cubeAt(0, 1)};
   EXPECT_EQ(shownBox(cubeAt(0, 10), boxes), merged(cubeAt(0, 10), boxes[1]));
-  // A world without extent, here far away, says nothing.
+  // A world without extent, here far away, is ignored.
   EXPECT_EQ(shownBox(cubeAt(-500, 0), boxes), merged(boxes[2], boxes[1]));
 }
 
@@ -117,7 +117,7 @@ TEST(FigureCamera, IsFiniteForAPoint) {
 }
 
 TEST(Project, PutsUpUpAndRightRightAndFarBehindNear) {
-  Camera camera;  // at z = 3, looking along -z
+  Camera camera;  // at z = 3, towards -z
   const auto middle = project(camera, {0, 0, 0});
   const auto up = project(camera, {0, 0.5F, 0});
   const auto right = project(camera, {0.5F, 0, 0});
@@ -125,7 +125,7 @@ TEST(Project, PutsUpUpAndRightRightAndFarBehindNear) {
   ASSERT_TRUE(middle && up && right && far);
   EXPECT_NEAR((*middle)[0], 0, 1e-6);
   EXPECT_NEAR((*middle)[1], 0, 1e-6);
-  // 0.5 at distance 3 on a window that is 1 wide at distance 1.
+  // A length of 0.5 at distance 3; the window's width is 1 at distance 1.
   EXPECT_NEAR((*up)[1], 2 * 0.5 / 3, 1e-6);
   EXPECT_NEAR((*right)[0], 2 * 0.5 / 3, 1e-6);
   EXPECT_GT((*far)[2], (*middle)[2]);

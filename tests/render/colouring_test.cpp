@@ -51,7 +51,7 @@ std::vector<std::string> labels(const Colouring& colouring) {
   return result;
 }
 
-/// As sRGB defines it, 0 to 1.
+/// Relative luminance of an sRGB colour, 0 to 1.
 double luminance(Rgb colour) {
   const auto linear = [](float value) {
     return value <= 0.04045F ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
@@ -240,7 +240,7 @@ TEST(Colouring, LightnessAloneTellsTheStepsOfAScaleApart) {
     input.dark = dark;
     for (const char* id : {"overlaps", "size"}) {
       const Colouring colouring = coloured(id, input);
-      // The first of the counts, 0, is not on the scale.
+      // The first count, 0, is not on the scale.
       for (std::size_t i = id == std::string_view("overlaps") ? 2 : 1; i < colouring.legend.size();
            ++i) {
         const double before = luminance(colouring.legend[i - 1].swatch) + 0.05;
@@ -251,8 +251,8 @@ TEST(Colouring, LightnessAloneTellsTheStepsOfAScaleApart) {
   }
 }
 
-// One eye in twelve of men lacks a colour. Every class has to be told from every other, and from
-// the outline of what is selected.
+// One man in twelve is colour-blind. Every class must be distinguishable from all others and from
+// the outline of the selection.
 TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
   constexpr double kLeast = 9.9;
   std::vector<Aabb> boxes = someBoxes(8);
@@ -296,20 +296,20 @@ TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
 TEST(PairLines, GoFromMiddleToMiddle) {
   const std::vector<Aabb> boxes = {boxOf(0, 2), boxOf(10, 4), boxOf(20, 2)};
   const std::vector<Pair> pairs = {{0, 1}, {1, 2}, {0, 2}, {2, 50}};
-  const PairRun run = pairs;
+  const PairRun list = pairs;
   PairLineStyle style;
   style.colour = 0x123456;
-  const Overlay all = pairLines(boxes, {&run, 1}, style);
+  const Overlay all = pairLines(boxes, {&list, 1}, style);
   ASSERT_EQ(all.lines.size(), 3U);
   EXPECT_EQ(all.lines[0].from, (std::array{1.0F, 1.0F, 1.0F}));
   EXPECT_EQ(all.lines[0].to, (std::array{12.0F, 12.0F, 12.0F}));
   EXPECT_EQ(all.lines[0].colour, 0x123456U);
 
   const std::vector<std::uint32_t> selection = {1, 99};
-  EXPECT_EQ(pairLines(boxes, {&run, 1}, style, selection).lines.size(), 2U);
-  EXPECT_EQ(pairLines(boxes, {&run, 1}, style, std::span<const std::uint32_t>()).lines.size(), 0U);
+  EXPECT_EQ(pairLines(boxes, {&list, 1}, style, selection).lines.size(), 2U);
+  EXPECT_EQ(pairLines(boxes, {&list, 1}, style, std::span<const std::uint32_t>()).lines.size(), 0U);
   style.most = 1;
-  const Overlay few = pairLines(boxes, {&run, 1}, style);
+  const Overlay few = pairLines(boxes, {&list, 1}, style);
   EXPECT_EQ(few.lines.size(), 1U);
   EXPECT_EQ(few.left_out, 2U);
 }
@@ -347,7 +347,7 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   EXPECT_EQ(structureOverlay(drawing, filter).left_out, 4U);
 }
 
-/// A cell of each of these populations.
+/// A drawing with a cell of each of these populations.
 RecordedDrawing cellsOf(const std::vector<std::uint32_t>& populations) {
   RecordedDrawing drawing;
   for (std::size_t i = 0; i < populations.size(); ++i) {
@@ -366,7 +366,7 @@ std::vector<std::string> texts(const std::vector<LegendEntry>& legend) {
 
 TEST(StructureOverlay, ColoursCellsByPopulationTheFullestLast) {
   RecordedDrawing drawing = cellsOf({3, 1, 64, 1, 8});
-  EXPECT_TRUE(tellsPopulations(drawing));
+  EXPECT_TRUE(hasPopulations(drawing));
   drawing.box(boxOf(0, 100), StructureRole::split, 0);
   const Overlay plain = structureOverlay(drawing, {});
   EXPECT_TRUE(plain.legend.empty());
@@ -383,10 +383,10 @@ TEST(StructureOverlay, ColoursCellsByPopulationTheFullestLast) {
   EXPECT_EQ(few.left_out, 4U);
   EXPECT_EQ(few.boxes[1].box, boxOf(2, 1));
   EXPECT_EQ(few.boxes[0].box, boxOf(4, 1));
-  EXPECT_FALSE(tellsPopulations(RecordedDrawing()));
+  EXPECT_FALSE(hasPopulations(RecordedDrawing()));
   RecordedDrawing untold;
   untold.box(boxOf(0, 1), StructureRole::cell, 0);
-  EXPECT_FALSE(tellsPopulations(untold));
+  EXPECT_FALSE(hasPopulations(untold));
   EXPECT_TRUE(structureOverlay(untold, {.near = {}, .by_population = true}).legend.empty());
 }
 

@@ -34,7 +34,7 @@ SceneInfo sceneWithSide(std::size_t objects, float side) {
   return {"FreeFall", "Cubes", static_cast<std::uint32_t>(objects), 100, cube({0, 0, 0}, side)};
 }
 
-/// Boxes of a world of side 10, and their pairs.
+/// Draws these boxes and pairs in a world of side 10.
 struct TestScene {
   explicit TestScene(std::size_t count) : boxes(randomCubes(count, 0.4F, 1.2F, 2026)) {
     for (std::uint32_t a = 0; a < count; ++a) {
@@ -44,8 +44,8 @@ struct TestScene {
     }
   }
   Picture draw(OffscreenContext& context) const {
-    const PairRun run = pairs;
-    return drawFrame(context, sceneWithSide(boxes.size(), 10), {60, boxes}, {&run, 1},
+    const PairRun pair_run = pairs;
+    return drawFrame(context, sceneWithSide(boxes.size(), 10), {60, boxes}, {&pair_run, 1},
                      kPictureWidth, kPictureHeight);
   }
 
@@ -55,8 +55,8 @@ struct TestScene {
 
 Picture drawBoxes(OffscreenContext& context, const SceneInfo& scene, const std::vector<Aabb>& boxes,
                   const std::vector<Pair>& pairs = {}) {
-  const PairRun run = pairs;
-  return drawFrame(context, scene, {1, boxes}, {&run, 1}, kPictureWidth, kPictureHeight);
+  const PairRun pair_run = pairs;
+  return drawFrame(context, scene, {1, boxes}, {&pair_run, 1}, kPictureWidth, kPictureHeight);
 }
 
 std::array<int, 3> colourAt(const Picture& picture, const SceneInfo& scene,
@@ -80,7 +80,7 @@ std::string messageOf(GlSource source, const OffscreenOptions& options) {
   return "";
 }
 
-/// Runs with each source that is installed; the others are skipped with the reason.
+/// Runs with each installed source, and skips the others with the reason.
 class EachSource : public testing::TestWithParam<GlSource> {
  protected:
   void SetUp() override {
@@ -115,7 +115,7 @@ TEST_P(EachSource, ColoursWhatOverlaps) {
   const SceneInfo scene = sceneWithSide(3, 10);
   const std::vector<Aabb> boxes = {cube({-3, 0, 3}, 2), cube({3, 0, -3}, 2), cube({0, 3, 0}, 2)};
   const Picture picture = drawBoxes(context(), scene, boxes, {{0, 1}});
-  // A little above the middle of the face that looks along z.
+  // A little above the middle of the face towards +z.
   const auto face = [&](std::size_t body) {
     const Aabb& box = boxes[body];
     return colourAt(picture, scene, {box.min[0] + 1, box.min[1] + 1.2F, box.max[2], 0});
@@ -140,7 +140,7 @@ TEST_P(EachSource, DrawsTheNearerBoxInFront) {
     auto ordered = boxes;
     if (reversed) std::swap(ordered[0], ordered[1]);
     const std::uint32_t near = reversed ? 1 : 0;
-    // A pair of the near body with one that does not exist colours it alone.
+    // A pair of the near body with a non-existing body colours only the near one.
     const Picture picture = drawBoxes(context(), scene, ordered, {{near, 99}});
     EXPECT_TRUE(isWarm(colourAt(picture, scene, {1.14F, 0.6F, 2.2F, 0})));
   }
@@ -197,7 +197,7 @@ TEST_P(EachSource, BodiesOutsideTheWorldAreSeen) {
   SceneInfo scene = sceneWithSide(1, 0);
   const std::vector<Aabb> boxes = {cube({500, 500, 500}, 3)};
   const Picture picture = drawBoxes(context(), scene, boxes);
-  scene.world = boxes[0];  // what the camera looks at
+  scene.world = boxes[0];  // the camera's target
   EXPECT_TRUE(isCool(colourAt(picture, scene, {500, 500.3F, 501.5F, 0})));
 }
 
@@ -284,7 +284,7 @@ TEST(OffscreenContext, AutomaticFallsBackToOsmesa) {
               HasSubstr("OSMesa"));
 }
 
-// EGL is installed, its drivers are not. In a process of its own: Mesa reads its environment once.
+// EGL without drivers. In a separate process, because Mesa reads its environment only once.
 TEST(OffscreenContextDeathTest, WithoutDriversNamesEachDisplayAndWhy) {
   if (!isInstalled(softwareOnly().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
   testing::GTEST_FLAG(death_test_style) = "threadsafe";

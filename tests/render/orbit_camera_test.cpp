@@ -73,7 +73,7 @@ TEST(OrbitCamera, TurnsWithoutTippingOver) {
 
 TEST(OrbitCamera, PanningKeepsThePivotUnderThePointer) {
   const OrbitCamera camera = tilted();
-  // A part of the height is twice that much of a picture from -1 to 1.
+  // A fraction of the height is twice as much in coordinates from -1 to 1.
   const OrbitCamera moved = panned(camera, 0.2F, -0.1F);
   expectNearPoint(seenAt(moved, camera.pivot), {0.4F / static_cast<float>(kWideAspect), -0.2F},
                   1e-4F);
@@ -173,7 +173,7 @@ TEST(OrbitCamera, DepthSuitsTheWholeWorldAndASingleBody) {
   const auto depthSteps = [](const OrbitCamera& orbit, float size) {
     const Camera camera = toCamera(orbit, kWideAspect, kUnit);
     EXPECT_LT(camera.near, orbit.distance / 2);
-    // All of the world is before the far plane.
+    // The far plane is behind the whole world.
     EXPECT_GT(camera.far, orbit.distance);
     EXPECT_TRUE(project(camera, orbit.pivot).has_value());
     const CameraAxes axes = axesOf(camera);
@@ -182,7 +182,7 @@ TEST(OrbitCamera, DepthSuitsTheWholeWorldAndASingleBody) {
     return (project(camera, behind).value()[2] - project(camera, orbit.pivot).value()[2]) *
            float{1 << 23};
   };
-  // A hundredth of what is looked at is many steps of a 24-bit depth buffer.
+  // A 24-bit depth buffer resolves a hundredth of the contents in many steps.
   EXPECT_GT(depthSteps(focusedOn({}, kUnit, kWideAspect), 0.01F), 1000);
   EXPECT_GT(depthSteps(focusedOn({}, {{0, 0, 0}, {0.001F, 0.001F, 0.001F}}, kWideAspect), 1e-5F),
             100);

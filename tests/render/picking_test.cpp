@@ -112,7 +112,7 @@ TEST(Picking, NothingBehindTheEyeIsHit) {
 TEST(Picking, FlatAndTinyBodiesCanBeHit) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   const Aabb point = cube({1013, 7, 3}, 0);
-  const Aabb plate{{990, 0, -10, 0}, {1010, 0, 10, 0}};  // seen on its edge
+  const Aabb plate{{990, 0, -10, 0}, {1010, 0, 10, 0}};  // seen edge-on
   const Aabb speck = cube({980, 20, 0}, 0.001F);
   const std::vector<Aabb> boxes = {point, plate, speck};
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {

@@ -35,7 +35,7 @@ Bodies randomBodies(std::size_t count, float smallest, float largest) {
   return bodies;
 }
 
-/// Of all three kinds, short and long ones, some of which leave the world.
+/// Short and long lines in all three styles, some of which extend out of the world.
 std::vector<SceneLine> randomLines(std::size_t count) {
   std::mt19937 random(99);
   std::uniform_real_distribution<float> place(-6, 6);
@@ -78,7 +78,7 @@ std::array<int, 3> colourInTheMiddle(const SceneView& view) {
 bool isRed(const std::array<int, 3>& rgb) { return rgb[0] > rgb[2] + 60; }
 bool isBlue(const std::array<int, 3>& rgb) { return rgb[2] > rgb[0] + 60; }
 
-/// Edges fade and rays are rounded a little differently, so borders of bodies may differ.
+/// Expects equal pictures except at borders of bodies, where fading and rounding differ slightly.
 void expectAlike(const Picture& a, const Picture& b) {
   ASSERT_EQ(a.rgba.size(), b.rgba.size());
   std::size_t different = 0;
@@ -173,7 +173,7 @@ TEST_P(SceneViewTest, OnlyVisibleBodiesAreDrawn) {
 
 TEST_P(SceneViewTest, AbsentBodiesAreNotDrawn) {
   const Bodies both{{cube({0, 0, 3}, 2), cube({0, 0, -3}, 3)}, {kRed, kBlue}};
-  const Bodies one{{kEmptyBox, both.boxes[1], kEmptyBox}, {kRed, kBlue, kRed}};
+  const Bodies second_only{{kEmptyBox, both.boxes[1], kEmptyBox}, {kRed, kBlue, kRed}};
   const std::vector<std::uint32_t> selected = {0};
   const auto picture = [&](const Bodies& bodies, std::span<const std::uint32_t> which) {
     SceneViewContent content = contentOf(bodies);
@@ -183,7 +183,7 @@ TEST_P(SceneViewTest, AbsentBodiesAreNotDrawn) {
     return view->read();
   };
   const Bodies alone{{both.boxes[1]}, {kBlue}};
-  EXPECT_EQ(picture(one, selected).rgba, picture(alone, {}).rgba);
+  EXPECT_EQ(picture(second_only, selected).rgba, picture(alone, {}).rgba);
 }
 
 TEST_P(SceneViewTest, TheSmallestBodyIsSeen) {
@@ -193,7 +193,7 @@ TEST_P(SceneViewTest, TheSmallestBodyIsSeen) {
     const Bodies bodies{{box}, {kRed}};
     SceneViewContent content = contentOf(bodies);
     const auto view = makeView();
-    // The plate is seen on its edge.
+    // The plate is seen edge-on.
     view->draw(content, wholeWorld(Direction::front));
     const Picture picture = view->read();
     bool seen = false;
@@ -216,7 +216,7 @@ TEST_P(SceneViewTest, ABodyAroundTheEyeIsNotDrawn) {
 }
 
 TEST_P(SceneViewTest, BodiesAcrossTheNearPlaneAreDrawn) {
-  // A beam beside the line of sight, from behind the eye to far before it.
+  // A beam beside the view axis, from behind the eye to far in front of it.
   const Bodies bodies{{{{0.2F, -1, -100, 0}, {3, 1, 100, 0}}}, {kRed}};
   const auto view = makeView();
   view->draw(contentOf(bodies), wholeWorld(Direction::front));
@@ -249,7 +249,7 @@ TEST_P(SceneViewTest, BodiesHideLinesUnlessTheyAreToBeShown) {
 
 TEST_P(SceneViewTest, SelectionIsSeenThroughOtherBodies) {
   const Bodies bodies{{cube({0, 0, -2}, 2), cube({0, 0, 2}, 4)}, {kBlue, kBlue}};
-  const std::vector<std::uint32_t> selected = {0, 99};  // the latter does not exist
+  const std::vector<std::uint32_t> selected = {0, 99};  // body 99 does not exist
   SceneViewContent content = contentOf(bodies);
   const auto view = makeView();
   view->draw(content, wholeWorld(Direction::front));

@@ -1,4 +1,4 @@
-// Authored scenes: as JSON, simulated, and made from frames of other sources.
+// Authored scenes: JSON, simulation, and creation from frames of other sources.
 
 #include "broadmark/scenes/authored_scene.h"
 
@@ -27,7 +27,7 @@ std::string refusalOf(const std::string& text) {
   return inputErrorOf([&] { parseAuthoredScene(text, "my scene.json"); });
 }
 
-/// A text of one body with these members, and more of the scene.
+/// A scene's JSON with members of one body, and more members of the scene.
 std::string sceneText(const std::string& body, const std::string& more = "") {
   return R"({"schema": "broadmark-scene/1", "name": "Test", "world": {"min": [-9, -9, -9], "max": [9, 9, 9]}, )" +
          more + R"("bodies": [{"box": [1, 1, 1], "position": [0, 0, 0]}, {)" + body + "}]}";
@@ -39,7 +39,7 @@ std::string repeated(std::string_view text, int times) {
   return all;
 }
 
-/// A float that is finite, of any size up to `most`, denormals and negative zero included.
+/// A random float of absolute value up to `most`, including denormals and negative zero.
 float anyFloat(std::mt19937& random, float most) {
   for (;;) {
     const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
@@ -91,7 +91,7 @@ AuthoredScene anyScene(unsigned seed, std::size_t bodies) {
   return scene;
 }
 
-/// The floats of a body as they lie in memory: negative zero is not zero here.
+/// The bits of a body's floats, to distinguish negative zero from zero.
 std::vector<std::uint32_t> bitsOf(const AuthoredBody& body) {
   std::vector<std::uint32_t> bits;
   const auto add = [&](const auto& floats) {
@@ -265,7 +265,7 @@ TEST(AuthoredScene, RefusalsNameTheBodyTheKeyAndWhatIsRight) {
   }
 }
 
-/// A few bodies that fall on a frozen floor.
+/// A few bodies that fall onto a frozen floor.
 AuthoredScene fallingScene() {
   AuthoredScene scene{.name = "Falling", .parameters = {{"frames", "20"}}};
   AuthoredBody floor{.shape = BoxShape{{8, 0.5F, 8}}, .frozen = true};
@@ -340,7 +340,7 @@ TEST(AuthoredSimulation, BodiesAppearWhereTheyAreStatedAndVanish) {
 }
 
 TEST(AuthoredSimulation, LayersCollideAsStatedAndTriggersPushNothing) {
-  // A sphere falls on a floor of layer 1; triggers are reported all the same.
+  // A sphere falls onto a floor of layer 1; triggers are also reported.
   const auto falls_through = [](const LayerMatrix& collide, std::uint32_t triggers) {
     AuthoredScene scene{.name = "Layers", .parameters = {{"frames", "60"}}};
     scene.collide = collide;
@@ -403,7 +403,7 @@ TEST(AuthoredSimulation, RefusesAWrongScene) {
 }
 
 TEST(SceneFromFrame, OfASimulationGoesOnAsItWouldHave) {
-  // Without contacts a body's future depends on its pose and velocity alone.
+  // Without contacts, a body's motion depends only on its pose and velocity.
   const auto simulation =
       sceneWith("freefall", {{"objects", "40"}, {"frames", "30"}, {"engine", "kinematic"}});
   const auto frames = allFrames(*simulation);

@@ -1,4 +1,4 @@
-// Baking: recordings with sidecars, and recognising them.
+// Baking recordings with sidecars, and detecting existing ones.
 
 #include <gtest/gtest.h>
 
@@ -166,9 +166,9 @@ TEST_F(Bake, AChangedRecordingMeansNotBaked) {
 
 TEST_F(Bake, RejectsPathsThatCannotBeWritten) {
   EXPECT_THROW(bake(*simulationOf("brownian"), {directory_ / "none/scene.aabbs"}), InputError);
-  // Its sidecar would take its place.
+  // Its sidecar would have the same path.
   EXPECT_THROW(bake(*simulationOf("brownian"), {directory_ / "scene.json"}), InputError);
-  // Two recordings cannot share one.
+  // Two recordings cannot share a sidecar.
   EXPECT_THROW(bake(*simulationOf("brownian"), {path_, directory_ / "scene.posrot"}), InputError);
   EXPECT_TRUE(directory_.empty());
 }

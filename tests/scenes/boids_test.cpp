@@ -1,4 +1,4 @@
-// The boids engine: flocks form, keep their distances and never leave the world.
+// The boids engine: boids form flocks, stay apart and never leave the world.
 
 #include <numbers>
 
@@ -25,7 +25,7 @@ PhysicsBody& launch(PhysicsEngine& engine, const Vec3& position, const Vec3& vel
       {.shape = kUnitCube, .pose = {.position = position}, .linear_velocity = velocity});
 }
 
-/// Closes the engine's world: a cube of ± half.
+/// Adds walls on all sides of a cube of ± half.
 void addWalls(PhysicsEngine& engine, float half) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const float sign : {-1.0F, 1.0F}) {
@@ -38,7 +38,7 @@ void addWalls(PhysicsEngine& engine, float half) {
 
 Point point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-/// Bodies spread in a ball, flying in all directions at the same speed.
+/// Adds bodies in a ball with equal speeds and random directions.
 std::vector<PhysicsBody*> addCrowd(PhysicsEngine& engine, std::size_t count, double radius,
                                    double speed) {
   scenes::Random random(7);
@@ -56,7 +56,7 @@ void step(PhysicsEngine& engine, int count) {
   for (int i = 0; i < count; ++i) engine.step();
 }
 
-/// The order parameter of flocking: length of the mean heading, 1 when all fly the same way.
+/// The order parameter of flocking: the length of the mean heading, 1 if all headings are equal.
 double polarisation(const std::vector<PhysicsBody*>& bodies) {
   Point sum{};
   for (const PhysicsBody* body : bodies) {
@@ -216,7 +216,7 @@ TEST(BoidsEngine, HandlesCrowdsAtOnePlaceAndBodiesFarAway) {
 }
 
 TEST(BoidsEngine, FollowsEveryNeighbourInSight) {
-  // The steering of each boid, computed again from all others.
+  // The steering of each boid, recomputed by brute force.
   auto engine =
       boidsEngine({{"sight", "4"}, {"separation", "0"}, {"alignment", "1"}, {"cohesion", "0"}});
   const auto bodies = addCrowd(*engine, 60, 7, 2);

@@ -1,4 +1,4 @@
-// Every brush: the same bodies for the same seed, and room for each.
+// Every brush: the same bodies for the same seed, without overlap.
 
 #include "broadmark/scenes/brush.h"
 

@@ -1,5 +1,5 @@
-// Bullet's physics beside algorithms that change the margin of Bullet's trees: a bake must not
-// depend on them.
+// Algorithms change the margin of Bullet's trees, a global variable. Bakes with Bullet's physics
+// must not depend on it.
 
 #include <gtest/gtest.h>
 
@@ -12,14 +12,14 @@
 #include "engine/helpers.h"
 #include "scenes/scene_runs.h"
 
-extern float gDbvtMargin;  // Bullet's, one for the whole process
+extern float gDbvtMargin;  // Bullet's global variable
 
 namespace broadmark::tests {
 namespace {
 
 constexpr float kOtherMargin = 0.5F;
 
-/// A thread that changes the margin for a moment when asked to, as algorithms do.
+/// A thread that changes the margin briefly on request, as algorithms do.
 class MarginChanger {
  public:
   MarginChanger() : thread_([this] { run(); }) {}
@@ -31,7 +31,7 @@ class MarginChanger {
   MarginChanger(const MarginChanger&) = delete;
   MarginChanger& operator=(const MarginChanger&) = delete;
 
-  /// Returns once it is changed, for a moment.
+  /// Returns when the margin has changed, before it is restored.
   void change() {
     wanted_.release();
     changed_.acquire();
@@ -51,12 +51,12 @@ class MarginChanger {
   std::atomic<bool> stopped_ = false;
   std::binary_semaphore wanted_{0};
   std::binary_semaphore changed_{0};
-  std::thread thread_;  // last: uses the others
+  std::thread thread_;  // last, because it uses the members above
 };
 
 class BulletMargin : public testing::Test {
  protected:
-  /// Of a bake of bodies that collide and, in Conveyor, are moved by setPose().
+  /// The hash of a bake of colliding bodies; Conveyor also moves bodies by setPose().
   std::string hashOfBake(const std::string& scene, const FrameProgress& progress = {}) {
     const auto path = directory_ / "scene.aabbs";
     const auto simulation =
@@ -75,7 +75,7 @@ TEST_F(BulletMargin, ChangedByOthersDoesNotChangeABake) {
     EXPECT_NE(hashOfBake(scene), alone) << scene << ": this margin makes no difference";
     gDbvtMargin = before;
 
-    // Every frame begins while it is changed.
+    // Every frame begins while the margin is changed.
     MarginChanger changer;
     const auto change = [&changer](std::uint32_t) {
       changer.change();

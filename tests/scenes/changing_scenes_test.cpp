@@ -1,4 +1,4 @@
-// The scenes whose bodies come and go, have layers or worlds: what each of them promises.
+// The properties of the scenes with appearing and vanishing bodies, layers or worlds.
 
 #include <gmock/gmock.h>
 
@@ -13,7 +13,7 @@
 namespace broadmark::tests {
 namespace {
 
-/// Those that simulate.
+/// The engines that simulate, unlike replays.
 std::vector<std::string> liveEngines() {
   std::vector<std::string> ids;
   for (const EngineListing& engine : availableEngines()) {
@@ -29,7 +29,7 @@ std::size_t populationOf(const Boxes& boxes) {
   return boxes.size() - static_cast<std::size_t>(std::ranges::count_if(boxes, isEmpty));
 }
 
-/// The bodies of this layer.
+/// The bodies of a layer.
 std::vector<std::uint32_t> bodiesIn(const SceneInfo& scene, std::uint8_t layer) {
   std::vector<std::uint32_t> bodies;
   for (std::uint32_t id = 0; id < scene.objects; ++id) {
@@ -106,7 +106,7 @@ TEST(ShooterScene, HasFourLayers) {
     EXPECT_TRUE(everMoves(frames, character));
     for (const Boxes& boxes : frames) EXPECT_FALSE(isEmpty(boxes[character]));
   }
-  // A burst of eight a character in every 20 frames, for 25 frames.
+  // Each character fires eight projectiles every 20 frames, which exist for 25 frames.
   std::size_t most = 0;
   for (const std::uint32_t projectile : bodiesIn(scene, 2)) {
     EXPECT_TRUE(isEmpty(frames[0][projectile]));
@@ -167,17 +167,17 @@ TEST(WorldScene, TakesAnyNumberOfMovers) {
 TEST(WorldsScene, CopiesAreAtTheSamePlaceAndMoveAsIfAlone) {
   for (const std::string& engine : liveEngines()) {
     SCOPED_TRACE(engine);
-    const ParameterValues one = {{"objects", "12"},
-                                 {"frames", "50"},
-                                 {"bodies_per_world", "12"},
-                                 {"episode", "40"},
-                                 {"engine", engine}};
-    const Frames alone = allFrames(*sceneWith("worlds", one));
-    ParameterValues many = one;
-    many["objects"] = "30";
-    auto simulation = sceneWith("worlds", many);
+    const ParameterValues single = {{"objects", "12"},
+                                    {"frames", "50"},
+                                    {"bodies_per_world", "12"},
+                                    {"episode", "40"},
+                                    {"engine", engine}};
+    const Frames alone = allFrames(*sceneWith("worlds", single));
+    ParameterValues multiple = single;
+    multiple["objects"] = "30";
+    auto simulation = sceneWith("worlds", multiple);
     const SceneInfo scene = simulation->scene();
-    EXPECT_EQ(scene.world, sceneWith("worlds", one)->scene().world);
+    EXPECT_EQ(scene.world, sceneWith("worlds", single)->scene().world);
     EXPECT_EQ(scene.filter.groupsOf(11).world, 0U);
     EXPECT_EQ(scene.filter.groupsOf(12).world, 1U);
     EXPECT_EQ(scene.filter.groupsOf(29).world, 2U) << "the last one is smaller";
@@ -191,7 +191,7 @@ TEST(WorldsScene, CopiesAreAtTheSamePlaceAndMoveAsIfAlone) {
 TEST(WorldsScene, ACopyStartsAgainAfterAnEpisode) {
   const Frames frames = allFrames(*sceneWith(
       "worlds", {{"objects", "40"}, {"frames", "45"}, {"episode", "20"}, {"engine", "kinematic"}}));
-  // Moved back after frame 20: then the same way again.
+  // Reset after frame 20, with the same motion again.
   for (std::size_t body = 0; body < 20; ++body) {
     EXPECT_EQ(frames[21][body], frames[41][body]);
     EXPECT_NE(frames[21][body], frames[20][body]);

@@ -1,4 +1,4 @@
-// City: bodies of very different sizes, most of which never move.
+// City: bodies of very different sizes, most of them static.
 
 #include "scenes/scene_runs.h"
 
@@ -49,8 +49,8 @@ TEST(CityScene, BuildingsStandOnTheGroundWithSizesFarApart) {
 }
 
 TEST(CityScene, StreetsAreFree) {
-  // No mover starts in a building or drives into one. (Without collisions, which may push movers
-  // off their lane.)
+  // No mover starts in a building or drives into one. Without collisions, because these may push
+  // movers off their lanes.
   auto simulation =
       sceneWith("city", {{"objects", "2000"}, {"frames", "90"}, {"engine", "kinematic"}});
   const std::vector<Boxes> frames = allFrames(*simulation);

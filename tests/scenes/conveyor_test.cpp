@@ -1,4 +1,4 @@
-// Conveyor: streams of different speeds that cross, and bodies that start again.
+// Conveyor: crossing streams of different speeds, and bodies that restart.
 
 #include <map>
 
@@ -7,7 +7,7 @@
 namespace broadmark::tests {
 namespace {
 
-/// The axis along which a move mostly goes.
+/// The dominant axis of a move.
 int axisOf(const Point& move) {
   int axis = 0;
   for (int other = 1; other < 3; ++other) {
@@ -24,7 +24,7 @@ TEST(ConveyorScene, EveryBeltHasItsOwnSpeed) {
   for (std::size_t i = 0; i < 600; ++i) {
     const std::size_t belt = i % 12;
     const Point move = way(frames[0][i], frames[1][i]);
-    if (lengthOf(move) > side / 4) continue;  // started again
+    if (lengthOf(move) > side / 4) continue;  // restarted
     EXPECT_EQ(axisOf(move), static_cast<int>(belt % 3)) << "body " << i;
     EXPECT_NEAR(30 * lengthOf(move) / side, 0.5 * static_cast<double>(belt + 1) / 12, 1e-3)
         << "body " << i;
@@ -37,7 +37,7 @@ TEST(ConveyorScene, BodiesAreTakenBackToTheStartAtASteadyRate) {
         sceneWith("conveyor", {{"objects", "600"}, {"frames", "120"}, {"engine", engine}});
     const std::vector<Boxes> frames = allFrames(*simulation);
     const double side = simulation->scene().world.max[0] * 2.0;
-    std::map<std::size_t, int> teleports;  // by half
+    std::map<std::size_t, int> teleports;  // by half of the time
     for (std::size_t frame = 1; frame <= 120; ++frame) {
       for (std::size_t i = 0; i < 600; ++i) {
         const double length = lengthOf(way(frames[frame - 1][i], frames[frame][i]));
@@ -45,7 +45,7 @@ TEST(ConveyorScene, BodiesAreTakenBackToTheStartAtASteadyRate) {
         if (length > side / 2) ++teleports[(frame - 1) / 60];
       }
     }
-    // Mean speed 13/48 of a side per second, so in two seconds more than half of the bodies.
+    // The mean speed is 13/48 of a side per second, so more than half of the bodies in two seconds.
     for (const std::size_t half : {0U, 1U}) {
       EXPECT_GT(teleports[half], 250) << engine;
       EXPECT_LT(teleports[half], 420) << engine;
@@ -59,7 +59,7 @@ TEST(ConveyorScene, StreamsCrossAndKeepTheirBelts) {
   const Aabb& world = simulation->scene().world;
   const double side = world.max[0] * 2.0;
   std::map<std::pair<std::size_t, std::size_t>, int> crossings;
-  int off = 0;  // bodies that others have pushed far off their belt
+  int off = 0;  // bodies that have been pushed far off their belt
   for (const std::size_t frame : {30U, 60U, 90U}) {
     const Boxes& boxes = frames[frame];
     EXPECT_TRUE(allInside(boxes, world, 0.2));

@@ -1,4 +1,4 @@
-// The example scenes in the assets: one made with the editor, one in which bodies come and go.
+// The example scenes in the assets: a scene from the editor, and a scene with changing bodies.
 
 #include <gmock/gmock.h>
 
@@ -25,12 +25,12 @@ std::unique_ptr<Brush> lineOf(int count, const ParameterValues& step) {
 constexpr int kDominoes = 24;
 constexpr int kLayers = 5;
 
-/// A table with a row of dominoes, a pyramid behind them, and a ball on its way.
+/// A table with a row of dominoes, a pyramid behind them, and a moving ball.
 AuthoredScene dominoes() {
   SceneEditor editor;
   editor.setName("Dominoes");
   editor.setWorld({{-20, -4, -8, 0}, {20, 12, 8, 0}});
-  // A domino that begins to fall is slow: it must not go to sleep.
+  // A domino starts to fall slowly, and must not fall asleep.
   editor.setParameters({{"frames", "250"}, {"friction", "0.3"}, {"sleep_threshold", "0"}});
 
   AuthoredBody table{.shape = BoxShape{{18, 0.5F, 4}}, .frozen = true};

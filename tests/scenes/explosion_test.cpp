@@ -1,11 +1,11 @@
-// Explosion: a density that falls in every frame.
+// Explosion: a density that decreases in every frame.
 
 #include "scenes/scene_runs.h"
 
 namespace broadmark::tests {
 namespace {
 
-/// Share of the bodies nearer to the world's centre than `radius` sides.
+/// The share of the bodies nearer to the world's centre than `radius` sides.
 double shareWithin(double radius, const Boxes& boxes, const Aabb& world) {
   const double limit = radius * (world.max[0] - world.min[0]);
   const auto count = std::ranges::count_if(

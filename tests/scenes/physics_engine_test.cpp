@@ -1,4 +1,4 @@
-// Every physics engine: bodies fall, rest, stay inside the walls and freeze.
+// Every physics engine: bodies fall, come to rest, stay inside the walls and freeze.
 
 #include "broadmark/scenes/physics_engine.h"
 
@@ -31,7 +31,7 @@ std::unique_ptr<PhysicsEngine> kinematicEngine(const PhysicsSettings& settings =
   return entryOf(engineEntries(), "kinematic", "engine").create(settings);
 }
 
-/// Engines whose bodies obey gravity, velocities and walls.
+/// Engines with gravity, velocities and walls.
 class PhysicsEngineTest : public testing::TestWithParam<EngineEntry> {
  protected:
   static std::unique_ptr<PhysicsEngine> makeEngine(const PhysicsSettings& settings = {}) {
@@ -46,7 +46,7 @@ class PhysicsEngineTest : public testing::TestWithParam<EngineEntry> {
                            .linear_velocity = velocity});
   }
 
-  /// A cube that is frozen while it moves, under gravity.
+  /// Adds a cube under gravity, and freezes it in motion.
   static PhysicsBody& addFrozenCube(PhysicsEngine& engine) {
     engine.setGravity({0, -10, 0});
     PhysicsBody& body = addCube(engine, {0, 0, 0}, {1, 2, 3});
@@ -68,10 +68,10 @@ class PhysicsEngineTest : public testing::TestWithParam<EngineEntry> {
   }
 };
 
-/// Shapes with the height of their centre above the floor they lie on.
+/// Shapes with the height of their centre above the floor when they rest on it.
 const std::pair<Shape, float> kRestingShapes[] = {{kUnitCube, 0.5F}, {SphereShape{0.7F}, 0.7F}};
 
-/// Those among them whose bodies collide with each other.
+/// Engines with collisions between bodies.
 class RigidEngineTest : public PhysicsEngineTest {};
 
 TEST_P(PhysicsEngineTest, BodiesFallAsGravityTells) {
@@ -80,7 +80,7 @@ TEST_P(PhysicsEngineTest, BodiesFallAsGravityTells) {
   PhysicsBody& body = addCube(*engine, {1, 2, 3});
   step(*engine, 30);
   EXPECT_NEAR(body.linearVelocity()[1], -10, 0.01);
-  EXPECT_NEAR(body.pose().position[1], 2 - 5, 0.1);  // the integration is of first order
+  EXPECT_NEAR(body.pose().position[1], 2 - 5, 0.1);  // first-order integration
   EXPECT_EQ(body.pose().position[0], 1);
   EXPECT_EQ(body.pose().position[2], 3);
 }
@@ -152,12 +152,12 @@ TEST_P(RigidEngineTest, SpheresTouchAtTheSumOfTheirRadii) {
   }
   EXPECT_GT(nearest, 1.48);
   EXPECT_LT(nearest, 1.5 + 2.0 / 30) << "more than the way of a frame";
-  // Equal masses swap their velocities.
+  // Bodies of equal mass exchange their velocities.
   EXPECT_NEAR(still.linearVelocity()[0], 2, 0.05);
   EXPECT_NEAR(moving.linearVelocity()[0], 0, 0.05);
 }
 
-/// How far the centre of a cube gets that flies at a wall 5 away: the farthest, and the last.
+/// The farthest and the last position of the centre of a cube that flies towards a wall at 5.
 std::pair<float, float> flyAtWall(PhysicsEngine& engine, int axis, float sign, float speed) {
   HalfSpace wall{.offset = -5};
   wall.normal[axis] = -sign;
@@ -181,7 +181,7 @@ TEST_P(PhysicsEngineTest, WallsStopBodiesThatWouldPassThemInOneStep) {
       const auto [slow_farthest, slow_last] = flyAtWall(*makeEngine(one_step), axis, sign, 3);
       EXPECT_NEAR(slow_farthest, 4.5, 0.02);
       EXPECT_GT(slow_last, 4);
-      // In each step by half of a cube's size, and by more than all of it.
+      // Per step: half of the cube's edge, and more than its edge.
       for (const float speed : {12.0F, 30.0F}) {
         const auto [farthest, last] = flyAtWall(*makeEngine(one_step), axis, sign, speed);
         EXPECT_LT(farthest, 5) << "the centre stays inside at speed " << speed;
@@ -193,7 +193,7 @@ TEST_P(PhysicsEngineTest, WallsStopBodiesThatWouldPassThemInOneStep) {
 }
 
 TEST_P(PhysicsEngineTest, FrictionHoldsABodyOnASlopeUpToItsCoefficient) {
-  // A slope's pull as a sideways part of gravity: slides when its share exceeds the friction.
+  // Oblique gravity simulates a slope: the body slides if the ratio exceeds the friction.
   for (const bool slides : {false, true}) {
     auto engine = makeEngine({.friction = 0.6});
     engine->addWall({.normal = {0, 1, 0}, .offset = 0});
@@ -328,7 +328,7 @@ TEST_P(PhysicsEngineTest, BodiesComeAndGo) {
   EXPECT_NEAR(third.pose().position[1], -5, 0.2) << "falls from where it appeared";
   engine->removeBody(*second);
   engine->removeBody(third);
-  EXPECT_TRUE(engine->allAsleep()) << "nobody is left";
+  EXPECT_TRUE(engine->allAsleep()) << "no body is left";
   step(*engine, 1);
 }
 
@@ -383,7 +383,7 @@ TEST_P(RigidEngineTest, LayersThatDoNotCollidePassThroughEachOther) {
   }
 }
 
-// Bodies of Bullet that are at rest are held in place, but only while something carries them.
+// The Bullet engine holds resting bodies in place, but only while they are supported.
 TEST(BulletEngine, AStackThatLosesItsLowestBodyFalls) {
   const auto engine = entryOf(engineEntries(), "bullet", "engine").create({});
   engine->setGravity({0, -10, 0});
@@ -418,7 +418,7 @@ TEST(KinematicEngine, BouncesAsHighAsTheRestitutionTells) {
       EXPECT_GE(above, -1e-6);
       if (bounced) apex = std::max(apex, above);
     }
-    // The rest of the substep in which it meets the floor is lost, and so is the apex between two.
+    // The rest of the substep of the impact is lost, and the apex may be between two substeps.
     EXPECT_NEAR(apex, height * restitution * restitution, 0.01);
   }
 }

@@ -1,4 +1,4 @@
-// Plausible physics: bodies stay in the world, do not sink into each other, gain no energy and come
+// Plausible physics: bodies stay in the world, do not penetrate each other, gain no energy and come
 // to rest.
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@ double reach(const BoxShape& box, const Eigen::Matrix3d& rotation, const Vector&
   return vectorOf(box.half_extents).dot((rotation.transpose() * axis).cwiseAbs());
 }
 
-/// How deep two turned boxes are in each other: the least overlap on the axes that may separate
-/// them (the normals of faces, and of pairs of edges). Negative: at least that far apart.
+/// The penetration depth of two rotated boxes: the minimum overlap on the separating axes (face
+/// normals and cross products of edges). Negative: a lower bound on the distance.
 double depth(const BoxShape& a, const Pose& pose_a, const BoxShape& b, const Pose& pose_b) {
   const Eigen::Matrix3d turned_a = rotationOf(pose_a);
   const Eigen::Matrix3d turned_b = rotationOf(pose_b);
@@ -50,7 +50,7 @@ double depth(const SphereShape& a, const Pose& pose_a, const SphereShape& b, con
   return a.radius + b.radius - (vectorOf(pose_b.position) - vectorOf(pose_a.position)).norm();
 }
 
-/// Both bodies are boxes, or both are spheres.
+/// The penetration depth of two bodies with the same kind of shape.
 double depth(const PhysicsBody& a, const PhysicsBody& b) {
   return std::visit(
       [&]<class Form>(const Form& form) {
@@ -59,7 +59,7 @@ double depth(const PhysicsBody& a, const PhysicsBody& b) {
       a.shape());
 }
 
-/// Inertia per mass about the axes of the shape.
+/// The inertia per mass about the axes of the shape.
 Vector inertia(const BoxShape& box) {
   const Vector squares = vectorOf(box.half_extents).cwiseAbs2();
   return (Vector::Constant(squares.sum()) - squares) / 3;
@@ -74,14 +74,14 @@ double kineticEnergy(const PhysicsBody& body) {
   return (vectorOf(body.linearVelocity()).squaredNorm() + about.dot(turning.cwiseAbs2())) / 2;
 }
 
-/// FreeFall on one engine, with access to its bodies.
+/// FreeFall on an engine, with access to its bodies.
 class FreeFallWorld {
  public:
   FreeFallWorld(const std::string& engine, const std::string& object_type, std::int64_t objects) {
     setting("engine", engine);
     setting("object_type", object_type);
     settings_.objects = objects;
-    // The longest bar must fit in.
+    // The world must be large enough for the longest bar.
     if (object_type == "assorted") settings_.density = 0.01;
     engine_ = entryOf(engineEntries(), engine, "engine").create(settings_.physics);
     for (int axis = 0; axis < 3; ++axis) {
@@ -104,7 +104,7 @@ class FreeFallWorld {
 
   [[nodiscard]] const std::vector<PhysicsBody*>& bodies() const { return bodies_; }
 
-  /// Kinetic, and potential above the floor; per mass of a body.
+  /// The mean kinetic energy plus potential energy above the floor, per mass of a body.
   [[nodiscard]] double energy() const {
     const double gravity = settings_.gravity * settings_.side();
     double sum = 0;
@@ -120,7 +120,7 @@ class FreeFallWorld {
     }));
   }
 
-  /// How far the farthest centre, or the farthest point, is outside; negative: inside.
+  /// The maximum distance of a centre, or of any point, from the world; negative: inside.
   [[nodiscard]] double outside(bool centres) const {
     double farthest = -1e9;
     for (const PhysicsBody* body : bodies_) {
@@ -135,8 +135,8 @@ class FreeFallWorld {
     return farthest;
   }
 
-  /// For each body, how deep it is in the one that it is deepest in; negative: the distance to the
-  /// nearest. Walls count as bodies.
+  /// The maximum penetration depth of each body; negative: the distance to the nearest body. Walls
+  /// count as bodies.
   [[nodiscard]] std::vector<double> depths() const {
     std::vector<double> deepest(bodies_.size(), -1e9);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -181,10 +181,10 @@ std::vector<std::string> enginesThat(Dynamics dynamics) {
 
 class Plausibility : public testing::TestWithParam<Case> {
  protected:
-  /// Simulates some frames: bodies gain no energy, and lose much of it. Calls check(frame) after
-  /// each.
-  template <class Check>
-  void expectLossOfEnergy(int frames, Check&& check) {
+  /// Simulates frames, and expects that bodies gain no energy and lose much of it. Calls
+  /// check(frame) after each.
+  template <class FrameCheck>
+  void expectLossOfEnergy(int frames, FrameCheck&& check) {
     const double start = world_.energy();
     double before = start;
     for (int frame = 1; frame <= frames; ++frame) {
@@ -200,16 +200,16 @@ class Plausibility : public testing::TestWithParam<Case> {
   FreeFallWorld world_{std::get<0>(GetParam()), std::get<1>(GetParam()), 200};
 };
 
-/// Engines whose bodies collide with each other.
+/// Engines with collisions between bodies.
 class RigidPlausibility : public Plausibility {};
-/// Engines whose bodies do not.
+/// Engines without collisions between bodies.
 class PassingPlausibility : public Plausibility {};
 
-// Measured, of either engine: no gain at all; depth 0.02 of cubes and spheres, 0.06 of assorted
-// bodies, which are up to 0.08 thin and begin deep inside each other and the walls.
+// Measured with either engine: no gain; depth 0.02 of cubes and spheres, 0.06 of assorted bodies,
+// which are as thin as 0.08 and start deep inside each other and the walls.
 TEST_P(RigidPlausibility, BodiesGainNoEnergySinkInOrEscape) {
   const double allowed = std::get<1>(GetParam()) == "assorted" ? 0.1 : 0.05;
-  constexpr int kUntangled = 20;  // frames until bodies that started inside each other are apart
+  constexpr int kUntangled = 20;  // frames until overlapping bodies are separated
   expectLossOfEnergy(120, [&](int frame) {
     EXPECT_LT(world_.outside(true), 0) << "frame " << frame << ": a centre is outside";
     if (frame <= kUntangled || frame % 10 != 0) return;
@@ -227,7 +227,7 @@ TEST_P(PassingPlausibility, AllBodiesComeToRest) {
   EXPECT_EQ(world_.resting(), 200U);
 }
 
-/// The whole of FreeFall: takes seconds.
+/// FreeFall until all bodies rest: takes seconds.
 class RigidSettling : public RigidPlausibility {};
 
 // Measured after 1,000 frames: all asleep, depth at most 0.009, gaps at most 0.006.
@@ -240,8 +240,8 @@ TEST_P(RigidSettling, AlmostAllBodiesRestOnSomething) {
   }
 }
 
-// A pile as high as that of 32,000 cubes in their world, under its gravity, on a small floor. With
-// bodies held by their velocity, three quarters of it moved in these frames, and it sank.
+// A pile as high as that of 32,000 cubes, under the gravity of their world, on a small floor. With
+// bodies held by their velocity, three quarters of the pile moved in these frames, and it sank.
 TEST(BulletPile, ComesToRestHoweverHighItIs) {
   const auto engine = entryOf(engineEntries(), "bullet", "engine").create(Settings().physics);
   constexpr Vec3 kHalfWorld = {3.5F, 24, 3.5F};

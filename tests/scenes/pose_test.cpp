@@ -13,7 +13,7 @@
 namespace broadmark::scenes {
 namespace {
 
-/// A turn by `angle` about one axis.
+/// A rotation by `angle` about an axis.
 Pose turnedPose(const Vec3& position, int axis, double angle) {
   Pose pose{.position = position, .rotation = {0, 0, 0, static_cast<float>(std::cos(angle / 2))}};
   pose.rotation[axis] = static_cast<float>(std::sin(angle / 2));
@@ -87,7 +87,7 @@ TEST(TightBox, OfATurnedBoxTouchesItsCorners) {
 }
 
 TEST(Random, SamplesAreTheSameEverywhere) {
-  // The engine's 10000th number is fixed by the C++ standard for the default seed.
+  // The C++ standard specifies the generator's 10000th number for the default seed.
   Random random(std::mt19937_64::default_seed);
   double last = 0;
   for (int i = 0; i < 10000; ++i) last = random.uniform();

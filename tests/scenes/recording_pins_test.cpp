@@ -1,8 +1,8 @@
-// Every scene with every object type on every engine: the same bits for the same parameters,
-// whatever else runs in the process, and the statistics in recording_pins.inc.
+// Every scene with every object type on every engine: the same bits for the same parameters, even
+// beside other simulations in the process, and the statistics in recording_pins.inc.
 //
-// A combination without a pin fails with the line to add there. Replace a line that no longer holds
-// only when the change is understood and intended.
+// A combination without a pin fails with the line to add there. Replace an outdated line only if
+// the change is understood and intended.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -59,19 +59,19 @@ std::unique_ptr<Simulation> simulationOf(const Combination& combination,
   return simulation;
 }
 
-/// Numbers that differ when the physics differ, but do not depend on single bodies: a body may take
-/// another path after another rounding.
+/// Statistics that depend on the physics, but not on single bodies, because rounding may change the
+/// path of a body.
 struct Statistics {
   double mean_edge = 0;  ///< of the boxes, over all frames
   double height_1 = 0;   ///< mean height of the centres in frame 1
-  double height_20 = 0;  ///< and in frame 20
+  double height_20 = 0;  ///< mean height of the centres in frame 20
   double spread_20 = 0;  ///< root mean square distance of the centres from the origin
   double pairs = 0;      ///< mean number of overlapping pairs per frame
   double moving_1 = 0;   ///< share of the boxes in frame 1 that differ from the initial pose
   double moving_20 = 0;  ///< share in frame 20 that differ from frame 19
 };
 
-/// Those of the bodies that are present.
+/// The boxes of the present bodies.
 std::vector<Aabb> presentIn(const std::vector<Aabb>& boxes) {
   std::vector<Aabb> present;
   std::ranges::remove_copy_if(boxes, std::back_inserter(present), isEmpty);
@@ -139,7 +139,7 @@ std::string pinLine(const Combination& c, const Statistics& s) {
 class EveryCombination : public testing::TestWithParam<Combination> {};
 
 TEST_P(EveryCombination, HasThePinnedStatistics) {
-  // Dense enough for pairs, large enough for the longest bar.
+  // Dense enough for pairs, and large enough for the longest bar.
   auto simulation =
       simulationOf(GetParam(), {{"objects", "200"}, {"frames", "20"}, {"density", "0.05"}});
   const double side = simulation->scene().world.max[0] * 2.0;
@@ -164,8 +164,8 @@ TEST_P(EveryCombination, GivesTheSameBitsWhateverElseRuns) {
   const ParameterValues values = {{"objects", "120"}, {"frames", "8"}, {"density", "0.05"}};
   const ParameterValues other_values = {
       {"objects", "60"}, {"frames", "8"}, {"seed", "2"}, {"substeps", "2"}, {"friction", "0.1"}};
-  const auto run = [&] { return allFrames(*simulationOf(GetParam(), values)); };
-  const Frames alone = run();
+  const auto simulate = [&] { return allFrames(*simulationOf(GetParam(), values)); };
+  const Frames alone = simulate();
 
   auto simulation = simulationOf(GetParam(), values);
   auto other = simulationOf(GetParam(), other_values);
@@ -177,8 +177,8 @@ TEST_P(EveryCombination, GivesTheSameBitsWhateverElseRuns) {
   }
   EXPECT_EQ(in_turn, alone) << "in turn with another";
 
-  auto first = std::async(std::launch::async, run);
-  auto second = std::async(std::launch::async, run);
+  auto first = std::async(std::launch::async, simulate);
+  auto second = std::async(std::launch::async, simulate);
   EXPECT_EQ(first.get(), alone) << "beside another thread";
   EXPECT_EQ(second.get(), alone) << "beside another thread";
 }

@@ -1,4 +1,4 @@
-// Recorded poses against recorded boxes, and the engines that replay recordings.
+// Recorded poses compared with recorded boxes, and the engines that replay recordings.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ double volume(const Aabb& box) {
   return product;
 }
 
-/// The recording of poses beside one of boxes.
+/// The path of the recording of poses beside a recording of boxes.
 fs::path posrotOf(const fs::path& aabbs) {
   return aabbs.parent_path().parent_path() / "Recordings_PositionRotation" /
          fs::path(aabbs.filename()).replace_extension(kPosrotExtension);
@@ -42,7 +42,7 @@ fs::path posrotOf(const fs::path& aabbs) {
 
 class Replays : public testing::Test {
  protected:
-  /// Simulates a small scene into .aabbs and .posrot below `small_`. Returns the first's path.
+  /// Bakes a small scene as .aabbs and .posrot below `small_`. Returns the path of the .aabbs.
   fs::path bakeSmall(const std::string& type, const std::string& objects = "64",
                      const std::string& frames = "5", const std::string& scene = "brownian") {
     auto simulation = sceneWith(
@@ -72,7 +72,7 @@ class Replays : public testing::Test {
 };
 
 TEST_F(Replays, PosesGiveTheBoxesThatTheSimulationHad) {
-  // Scenes whose bodies have the sizes of their object type and start unturned.
+  // Scenes with bodies in the sizes of their object type, initially unrotated.
   const std::set<std::string> usual_scenes = {"freefall", "brownian", "gravity"};
   for (const SceneListing& scene : builtinScenes()) {
     if (!fitsAabbs(makeSimulation(scene.id)->scene())) continue;
@@ -84,10 +84,10 @@ TEST_F(Replays, PosesGiveTheBoxesThatTheSimulationHad) {
       EXPECT_EQ(poses.scene(), boxes.scene());
       const Frames recorded = allFrames(boxes);
       const Frames replayed = allFrames(poses);
-      // Eight units in the last place of the farthest corner, where sizes are any numbers.
+      // Eight ulps of the farthest corner, for bodies of arbitrary sizes.
       const float uncertain = 8 * 0x1p-23F * 2 * boxes.scene().world.max[0];
       const bool usual = type != "assorted" && usual_scenes.contains(scene.id);
-      // Where bodies are turned from the start, the initial set shows them unturned.
+      // The initial boxes of bodies with an initial rotation are unrotated, so skip them.
       for (std::size_t f = usual_scenes.contains(scene.id) ? 0 : 1; f < recorded.size(); ++f) {
         for (std::size_t i = 0; i < recorded[f].size(); ++i) {
           if (!usual) {
@@ -172,7 +172,7 @@ TEST_F(Replays, SplitterStartsWithPartsThatTileTheDoubledBody) {
         sum += volume(eight[a]);
         for (std::size_t b = 0; b < a; ++b) {
           EXPECT_TRUE(overlaps(eight[a], eight[b])) << "all eight meet in the middle";
-          // Closed boxes that only touch: their interiors are apart along some axis.
+          // Closed boxes that only touch: their interiors are disjoint on some axis.
           bool apart = false;
           for (int axis = 0; axis < 3; ++axis) {
             apart |= eight[a].max[axis] == eight[b].min[axis] ||
@@ -209,7 +209,7 @@ TEST_F(Replays, SplitterMovesThePartsAsTheBodyMoves) {
           for (int axis = 0; axis < 3; ++axis) {
             middle[axis] += poses[part].position[axis] / 8;
           }
-          // As large as the body was.
+          // A part has the size of the original body.
           const Vec3 half = whole.extents(i, pose.rotation);
           EXPECT_EQ(parts->boxes[part], boxAround(poses[part].position, half));
           hull = merged(hull, parts->boxes[part]);
@@ -217,7 +217,7 @@ TEST_F(Replays, SplitterMovesThePartsAsTheBodyMoves) {
         for (int axis = 0; axis < 3; ++axis) {
           ASSERT_NEAR(middle[axis], 2 * pose.position[axis], tolerance);
         }
-        if (type == "spheres") continue;  // parts turn about the middle, a ball does not
+        if (type == "spheres") continue;  // parts rotate about the middle, a ball does not
         Aabb doubled = boxAround({}, whole.extents(i, pose.rotation));
         for (int axis = 0; axis < 3; ++axis) {
           doubled.min[axis] = 2 * (doubled.min[axis] + pose.position[axis]);
@@ -230,7 +230,7 @@ TEST_F(Replays, SplitterMovesThePartsAsTheBodyMoves) {
   }
 }
 
-// Parts of a turned body: the first pair shares a face, so their boxes overlap, in every frame.
+// Parts of a rotated body: the first pair shares a face, so their boxes overlap in every frame.
 TEST_F(Replays, PartsOfOneBodyStayTogether) {
   bakeSmall("cubes");
   auto splitter = replay("splitter", {{"objects", "512"}});

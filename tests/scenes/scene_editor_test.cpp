@@ -147,7 +147,7 @@ TEST(SceneEditor, GroupsAreSelectedTogether) {
   EXPECT_THAT(editor.withGroups({5, 0}), ElementsAre(0, 2, 3, 5));
   EXPECT_THAT(editor.withGroups({0}), ElementsAre(0));
   EXPECT_THAT(editor.withGroups({99}), ElementsAre(99)) << "it is only just to be added";
-  // One that joins another group leaves its own.
+  // A body that joins a group leaves its former one.
   editor.select({3, 0});
   editor.group();
   EXPECT_THAT(groups(editor), ElementsAre(3, 1, 2, 3, 1, 2));
@@ -276,7 +276,7 @@ TEST(SceneEditor, TheHistoryIsBoundedButKeepsTheLatestStep) {
   EXPECT_TRUE(editor.isModified());
 }
 
-/// Edits at random, some refused.
+/// Random edits, some of them invalid.
 class Monkey {
  public:
   explicit Monkey(unsigned seed) : random_(seed) {}
@@ -374,7 +374,7 @@ TEST(SceneEditor, AnySequenceIsUndoneAndRedoneExactly) {
       if (i % 31 == 0) editor.redo();
     }
     const AuthoredScene last = editor.scene();
-    const bool could_redo = editor.canRedo();  // if nothing was edited since the last undo
+    const bool could_redo = editor.canRedo();  // false after an edit since the last undo
     std::vector<State> states;
     while (editor.canUndo()) {
       states.push_back(stateOf(editor));

@@ -1,4 +1,4 @@
-// Files of scene parameters: what they set, and how bad ones are refused.
+// Files of scene parameters: their effects, and errors in invalid files.
 
 #include <gmock/gmock.h>
 

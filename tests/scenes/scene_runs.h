@@ -1,4 +1,4 @@
-// Helpers of the tests of scenes: running a scene, and measuring its frames.
+// Helpers of the scene tests: running a scene, and measuring its frames.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Boxes = std::vector<Aabb>;
 using Frames = std::vector<Boxes>;
 using Point = std::array<double, 3>;
 
-/// A built-in scene with these parameters; engine "": its default.
+/// A built-in scene with these parameters; engine "": the default.
 inline std::unique_ptr<Simulation> sceneWith(const std::string& scene,
                                              const ParameterValues& values,
                                              const std::string& engine = {}) {
@@ -61,14 +61,14 @@ inline double dot(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// How a body's centre moved from one frame to another.
+/// The displacement of a body's centre between two frames.
 inline Point way(const Aabb& from, const Aabb& to) { return minus(centreOf(to), centreOf(from)); }
 
 inline double longestEdgeOf(const Aabb& box) {
   return std::max({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
 }
 
-/// How far the farthest box reaches out of the world; negative: all are inside.
+/// The maximum extent of a box beyond the world; negative: all boxes are inside.
 inline double reachOutside(std::span<const Aabb> boxes, const Aabb& world) {
   double farthest = -1e9;
   for (const Aabb& box : boxes) {
@@ -80,7 +80,7 @@ inline double reachOutside(std::span<const Aabb> boxes, const Aabb& world) {
   return farthest;
 }
 
-/// Whether no box reaches out of the world by more than `slack`.
+/// Whether no box extends beyond the world by more than `slack`.
 inline bool allInside(std::span<const Aabb> boxes, const Aabb& world, double slack) {
   return reachOutside(boxes, world) <= slack;
 }

@@ -1,4 +1,4 @@
-// What the built-in scenes do with their bodies.
+// The calls of the built-in scenes to their bodies.
 
 #include "broadmark/scenes/scene.h"
 
@@ -61,7 +61,7 @@ class NotingEngine final : public PhysicsEngine {
   Vec3 noted_gravity{};
 };
 
-/// A scene of `objects` bodies on such an engine.
+/// A scene of `objects` bodies on the recording engine.
 struct Rehearsal {
   Rehearsal(const std::string& id, std::int64_t objects) {
     scene = entryOf(sceneEntries(), id, "scene").create();

@@ -27,7 +27,7 @@ TEST_P(EveryScene, DescribesItselfByItsParameters) {
   EXPECT_EQ(simulation->scene().objects, 1000U);
   EXPECT_EQ(simulation->scene().frames, 1000U);
   const double density = std::stod(parameterValues(*simulation).at("density"));
-  // Worlds states the density of a single one.
+  // Worlds states the density of a single world.
   const bool worlds = GetParam().id == "worlds";
   EXPECT_FLOAT_EQ(simulation->scene().world.max[0],
                   static_cast<float>(std::cbrt((worlds ? 20 : 1000) / density) / 2));
@@ -92,10 +92,10 @@ TEST_P(EveryScene, SaysExactlyWhatChangedAndWhoIsAbsent) {
 
 TEST_P(EveryScene, ThreadsDoNotInfluenceEachOther) {
   const ParameterValues values = {{"objects", "150"}, {"frames", "15"}};
-  const auto run = [&] { return allFrames(*sceneWith(GetParam().id, values)); };
-  const Frames alone = run();
+  const auto simulate = [&] { return allFrames(*sceneWith(GetParam().id, values)); };
+  const Frames alone = simulate();
   std::vector<std::future<Frames>> others;
-  for (int i = 0; i < 3; ++i) others.push_back(std::async(std::launch::async, run));
+  for (int i = 0; i < 3; ++i) others.push_back(std::async(std::launch::async, simulate));
   for (auto& other : others) EXPECT_EQ(other.get(), alone);
 }
 
@@ -211,7 +211,7 @@ TEST(FreeFallSimulation, FallsAndComesToRestOnTheFloor) {
   EXPECT_LT(reachOutside(rest, world), 0.02);
   for (std::size_t i = 0; i < rest.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      // The balls inscribed into two unit cubes meet only if the cubes do.
+      // The inscribed balls of two unit cubes overlap only if the cubes do.
       EXPECT_GT(lengthOf(way(rest[i], rest[j])), 0.97) << i << " penetrates " << j;
     }
   }
@@ -247,7 +247,7 @@ TEST(GravitySimulation, GathersBodiesAtTheWallThatGravityPointsTo) {
 }
 
 TEST(Simulation, BodiesThatLeaveTheWorldAreFrozen) {
-  // Bodies start in a ball that reaches out of the world.
+  // Bodies start in a ball that extends beyond the world.
   auto simulation =
       sceneWith("brownian", {{"objects", "200"}, {"frames", "20"}, {"initial_radius", "0.8"}});
   const Frames frames = allFrames(*simulation);

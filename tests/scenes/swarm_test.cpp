@@ -1,11 +1,11 @@
-// Swarm: flocks that move and stay together.
+// Swarm: cohesive moving flocks.
 
 #include "scenes/scene_runs.h"
 
 namespace broadmark::tests {
 namespace {
 
-/// Mean cosine between the headings of bodies nearer than `distance` to each other.
+/// The mean cosine between the headings of bodies at most `distance` apart.
 double localOrder(const Boxes& before, const Boxes& after, double distance) {
   double sum = 0;
   int count = 0;
@@ -37,7 +37,7 @@ TEST(SwarmScene, StaysInTheWorldAndKeepsMoving) {
   const std::vector<Boxes> frames = allFrames(*simulation);
   const Aabb& world = simulation->scene().world;
   for (const Boxes& boxes : frames) {
-    // At the start flocks lie within the world, but may touch its walls.
+    // The initial flocks are inside the world, but may touch its walls.
     ASSERT_TRUE(allInside(boxes, world, 1));
   }
   for (std::size_t frame = 1; frame <= 400; ++frame) {
@@ -52,7 +52,7 @@ TEST(SwarmScene, IsMuchDenserWhereTheFlocksAre) {
   auto simulation = sceneWith("swarm", {{"objects", "1000"}, {"frames", "100"}});
   const Boxes last = allFrames(*simulation).back();
   const double side = simulation->scene().world.max[0] * 2.0;
-  // Of the 1000 cells of the world, the most crowded tenth.
+  // The most crowded tenth of the world's 1000 cells.
   std::vector<int> cells(1000, 0);
   for (const Aabb& box : last) {
     int cell = 0;

@@ -80,9 +80,9 @@ wait 40
 key End
 wait idle
 write frame {END}
-expect lane.sap.status = ok
+expect algorithm.sap.status = ok
 click Algorithms/sap/Remove
-expect lanes = 0
+expect algorithms = 0
 expect error = ""
 """
 
@@ -176,7 +176,7 @@ expect title = {name}
         ids = self._random.sample(ALGORITHMS, self._number(2, 4))
         add = "".join(f"click Algorithms/Add…\nclick Algorithms/add/{id_}\n" for id_ in ids)
         remove = "".join(f"click Algorithms/{id_}/Remove\n" for id_ in ids)
-        expectations = "".join(f"expect lane.{id_}.status = ok\n" for id_ in ids)
+        expectations = "".join(f"expect algorithm.{id_}.status = ok\n" for id_ in ids)
         return f"""
 open changing.broadmark
 wait idle
@@ -187,7 +187,7 @@ wait 3
 panel Timeline
 click Timeline/logarithmic
 wait 5
-{remove}expect lanes = 0
+{remove}expect algorithms = 0
 """
 
     def _crash(self) -> str:
@@ -202,7 +202,7 @@ choose Algorithms/unruly/deed crash
 enter Algorithms/unruly/frame {self._number(1, 19)}
 key End
 wait idle
-expect lane.unruly.status = error
+expect algorithm.unruly.status = error
 click Algorithms/unruly/Remove
 expect error = ""
 """
@@ -223,7 +223,7 @@ key Escape
 key C
 key H
 key H
-click "Look/{self._random.choice(['top', 'front', 'left', 'figure', 'all of it'])}"
+click "Display/{self._random.choice(['top', 'front', 'left', 'figure', 'all of it'])}"
 wait 20
 panel {self._random.choice(PANELS)}
 wait 2

@@ -1,4 +1,4 @@
-// Worlds to test algorithms on in which bodies come and go, and not all pairs are wanted.
+// Test worlds with bodies that appear and vanish, and with collision filters.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ using inputs::NamedFilter;
 using inputs::Presence;
 namespace presences = inputs::presences;
 
-/// A world of `capacity` bodies over some frames; the same arguments give the same one.
+/// A named sequence of frames and the filter of its pairs.
 struct ChangingWorld {
   std::string name;
   CollisionFilter filter;
   std::vector<std::vector<Aabb>> frames;
-  std::optional<Aabb> bounds = {};  ///< what the scene calls its world; else what holds all boxes
+  std::optional<Aabb> bounds = {};  ///< world bounds of the scene; by default of all boxes
 };
 
-/// The frames of an input, with only those bodies that are there.
+/// The frames of an input; absent bodies have empty boxes.
 inline std::vector<std::vector<Aabb>> framesWith(const inputs::Input& input, std::size_t n,
                                                  std::uint32_t count, const Presence& present) {
   std::vector<std::vector<Aabb>> frames;
@@ -48,7 +48,7 @@ inline FrameList listed(SceneInfo scene, std::vector<std::vector<Aabb>> frames) 
   return FrameList(given);
 }
 
-/// The frames of a scene, with only those bodies that are there.
+/// The frames of a scene; absent bodies have empty boxes.
 inline FrameList changing(FrameSource& source, const Presence& present,
                           const CollisionFilter& filter = {}) {
   SceneInfo scene = source.scene();

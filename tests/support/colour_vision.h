@@ -1,4 +1,4 @@
-// How colours look to eyes of several kinds, and how well one is told from another.
+// Simulates colour vision deficiencies and measures how well two colours can be distinguished.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using Triple = std::array<double, 3>;
 using Matrix = std::array<Triple, 3>;
 
 /// On linear RGB: Machado, Oliveira, Fernandes, "A Physiologically-based Model for Simulation of
-/// Color Vision Deficiency" (2009), severity 1. The first sees all.
+/// Color Vision Deficiency" (2009), severity 1. The first has full colour vision.
 struct Eye {
   const char* name;
   Matrix matrix;
@@ -61,28 +61,28 @@ inline Triple labOf(Rgb colour, const Eye& eye) {
   constexpr Triple kWhite = {0.95047, 1, 1.08883};
   Triple f = times(kToXyz, seen);
   for (std::size_t i = 0; i < 3; ++i) {
-    const double part = f[i] / kWhite[i];
-    f[i] = part > 216.0 / 24389 ? std::cbrt(part) : (24389.0 / 27 * part + 16) / 116;
+    const double ratio = f[i] / kWhite[i];
+    f[i] = ratio > 216.0 / 24389 ? std::cbrt(ratio) : (24389.0 / 27 * ratio + 16) / 116;
   }
   return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
 }
 
-/// The distance in L*a*b*: from about 2 on two colours side by side are told apart.
+/// Distance in L*a*b*. Adjacent colours are distinguishable from about 2 on.
 inline double differenceOf(Rgb a, Rgb b, const Eye& eye) {
   const Triple x = labOf(a, eye);
   const Triple y = labOf(b, eye);
   return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
 }
 
-/// WCAG 2: from 1 to 21; text wants 4.5.
+/// WCAG 2: from 1 to 21; text needs 4.5.
 inline double contrastOf(Rgb a, Rgb b) {
   const auto luminance = [](Rgb colour) {
     const Triple rgb = linear(colour);
     return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
   };
-  const double one = luminance(a) + 0.05;
-  const double other = luminance(b) + 0.05;
-  return std::max(one, other) / std::min(one, other);
+  const double luminance_a = luminance(a) + 0.05;
+  const double luminance_b = luminance(b) + 0.05;
+  return std::max(luminance_a, luminance_b) / std::min(luminance_a, luminance_b);
 }
 
 }  // namespace broadmark::tests

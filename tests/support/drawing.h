@@ -1,4 +1,4 @@
-// Boxes to draw, and where they appear in a picture.
+// Boxes to draw, and their positions and colours in a picture.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ inline Aabb cube(const std::array<float, 3>& centre, float side) {
   return box;
 }
 
-/// Cubes in a world of side 10. Not by std::uniform_real_distribution, whose results differ between
-/// libraries.
+/// Cubes in a world of side 10. Does not use std::uniform_real_distribution: its results differ
+/// between libraries.
 inline std::vector<Aabb> randomCubes(std::size_t count, float smallest, float largest,
                                      unsigned seed) {
   std::mt19937 bits(seed);
@@ -46,17 +46,17 @@ inline std::vector<Aabb> randomCubes(std::size_t count, float smallest, float la
   return boxes;
 }
 
-/// Where a point of view space appears, in pixels from the upper left corner.
+/// Position of a world point in the picture, in pixels from the upper left corner.
 inline std::array<float, 2> pixelOf(const Viewpoint& viewpoint, const std::array<float, 3>& point) {
-  const std::array at = project(viewpoint.camera, point).value();
-  return {(at[0] + 1) / 2 * static_cast<float>(viewpoint.width),
-          (1 - at[1]) / 2 * static_cast<float>(viewpoint.height)};
+  const std::array ndc = project(viewpoint.camera, point).value();
+  return {(ndc[0] + 1) / 2 * static_cast<float>(viewpoint.width),
+          (1 - ndc[1]) / 2 * static_cast<float>(viewpoint.height)};
 }
 
-/// Red, green and blue at a place of the picture, in pixels from the upper left corner.
-inline std::array<int, 3> colourAt(const Picture& picture, const std::array<float, 2>& place) {
-  const auto column = static_cast<std::size_t>(place[0]);
-  const auto row = static_cast<std::size_t>(place[1]);
+/// Red, green and blue at a position of the picture, in pixels from the upper left corner.
+inline std::array<int, 3> colourAt(const Picture& picture, const std::array<float, 2>& position) {
+  const auto column = static_cast<std::size_t>(position[0]);
+  const auto row = static_cast<std::size_t>(position[1]);
   const std::uint8_t* pixel =
       &picture.rgba[4 * (row * static_cast<std::size_t>(picture.width) + column)];
   return {pixel[0], pixel[1], pixel[2]};

@@ -1,23 +1,23 @@
-// Algorithms that are wrong once in a while, to show how such a fault is found. A plug-in, never
-// part of the program.
+// Algorithms that are wrong occasionally, to show how such a fault is found. A plug-in, never part
+// of the program.
 //
-// "lossy-removal" and "lossy-layers" test all pairs. The first loses one whenever a body has
-// vanished since the frame before, the second all pairs of two layers.
+// "lossy-removal" and "lossy-layers" test all pairs. The first loses a pair whenever a body has
+// vanished since the previous frame, the second all pairs of two layers.
 //
-// The other two keep a fat box around each body (as Bullet's and Box2D's trees do) and all pairs of
-// overlapping fat boxes. Only bodies that left their fat box, the moved ones, get a new one and are
-// queried anew. Moved bodies are taken from a small buffer in turn, and of two moved bodies only
-// the lower one reports the pair, so that it is found once.
+// The other two store a fat box of each body (as Bullet's and Box2D's trees do) and all pairs of
+// overlapping fat boxes. Only bodies that left their fat box, the moved ones, get a new fat box and
+// a new query. Moved bodies are processed in batches, through a small buffer. Of two moved bodies
+// only the lower one reports the pair, so that it is found once.
 //
 // The fault of "faulty": that last rule is right only if all new fat boxes are set before the first
-// query. They are so within one fill of the buffer only. When i < j move in the same frame but in
-// different fills, i is queried while j's fat box is still the old one, and j leaves the pair to i.
-// Two bodies that come together in one frame can be lost if a third one moves, too, and splits the
-// buffer between them. It takes three bodies, an initial pose, and one frame, or two if they begin
+// query, but that holds only within one batch. When i < j move in the same frame but in different
+// batches, i is queried while j's fat box is still the old one, and j leaves the pair to i. Two
+// bodies that begin to overlap in one frame can be lost if a third body moves, too, and splits the
+// batch between them. It takes three bodies, an initial pose, and one frame, or two if they begin
 // to overlap later. The pair stays lost until one of the two moves again.
 //
-// The fault of "faulty-extra": pairs of two bodies that moved in this frame go into the answer as
-// they are found, that is, for their fat boxes.
+// The fault of "faulty-extra": pairs of two bodies that moved in this frame are reported untested,
+// that is, for their fat boxes.
 
 #include "support/faulty_algorithm.h"
 
@@ -85,21 +85,21 @@ class FatBoxes final : public BoxBroadPhase {
   }
 
  private:
-  /// So small that two bodies and a third one show the fault.
+  /// Small enough for three bodies to show the fault.
   static constexpr std::size_t kBuffer = 2;
 
   void findPairs() override {
     for (const Pair pair : candidates_) {
-      if (broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]) || isTakenUntested(pair)) {
+      if (broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]) || isReportedUntested(pair)) {
         pairs().add(pair.a, pair.b);
       }
     }
   }
 
-  /// New fat boxes and queries for the moved bodies, `fill` of them at a time.
-  void update(std::size_t fill) {
-    for (std::size_t first = 0; first < moved_.size(); first += fill) {
-      const std::size_t last = std::min(first + fill, moved_.size());
+  /// New fat boxes and queries for the moved bodies, in batches.
+  void update(std::size_t batch_size) {
+    for (std::size_t first = 0; first < moved_.size(); first += batch_size) {
+      const std::size_t last = std::min(first + batch_size, moved_.size());
       for (std::size_t i = first; i < last; ++i) {
         fat_[moved_[i]] = enlarged(boxes()[moved_[i]], static_cast<float>(margin_));
       }
@@ -109,13 +109,13 @@ class FatBoxes final : public BoxBroadPhase {
 
   void query(std::uint32_t body) {
     for (std::uint32_t other = 0; other < fat_.size(); ++other) {
-      const bool is_theirs = other < body && has_moved_[other] != 0;
-      if (other == body || is_theirs || !broadmark::overlaps(fat_[body], fat_[other])) continue;
+      const bool other_reports = other < body && has_moved_[other] != 0;
+      if (other == body || other_reports || !broadmark::overlaps(fat_[body], fat_[other])) continue;
       candidates_.push_back(orderedPair(body, other));
     }
   }
 
-  [[nodiscard]] bool isTakenUntested(const Pair pair) const {
+  [[nodiscard]] bool isReportedUntested(const Pair pair) const {
     return fault_ == Fault::extra && has_moved_[pair.a] != 0 && has_moved_[pair.b] != 0;
   }
 
@@ -136,11 +136,11 @@ class FatBoxes final : public BoxBroadPhase {
   std::vector<Pair> candidates_;
 };
 
-/// All wanted pairs, of which `spoil(answer, scene, boxes, before)` takes some.
+/// Brute force; `spoil(answer, scene, boxes, before)` then removes some wanted pairs.
 template <class Spoil>
-class AllPairsButSome final : public BoxBroadPhase {
+class LossyBruteForce final : public BoxBroadPhase {
  public:
-  explicit AllPairsButSome(Spoil spoil) : spoil_(spoil) {}
+  explicit LossyBruteForce(Spoil spoil) : spoil_(spoil) {}
 
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
@@ -168,7 +168,7 @@ class AllPairsButSome final : public BoxBroadPhase {
   std::vector<Aabb> before_;
 };
 
-void loseOneAtARemoval(std::vector<Pair>& answer, const SceneInfo&, const std::vector<Aabb>& boxes,
+void losePairAtRemoval(std::vector<Pair>& answer, const SceneInfo&, const std::vector<Aabb>& boxes,
                        const std::vector<Aabb>& before) {
   for (std::size_t body = 0; body < boxes.size(); ++body) {
     if (answer.empty() || !isEmpty(boxes[body]) || isEmpty(before[body])) continue;
@@ -195,7 +195,7 @@ Algorithm changingVariant(const std::string& id, const std::string& summary, Spo
                           .time = "O(n²)",
                           .space = "O(n + k)",
                           .source = "a test of Broadmark's, wrong on purpose"},
-          .create = [spoil] { return std::make_unique<AllPairsButSome<Spoil>>(spoil); }};
+          .create = [spoil] { return std::make_unique<LossyBruteForce<Spoil>>(spoil); }};
 }
 
 Algorithm variant(const std::string& id, const std::string& summary, Fault fault) {
@@ -216,7 +216,7 @@ Algorithm variant(const std::string& id, const std::string& summary, Fault fault
 std::vector<Algorithm> variants() {
   return {variant("faulty", "loses a pair once in some hundred frames", Fault::missed),
           variant("faulty-extra", "reports false pairs", Fault::extra),
-          changingVariant("lossy-removal", "loses a pair when a body vanishes", loseOneAtARemoval),
+          changingVariant("lossy-removal", "loses a pair when a body vanishes", losePairAtRemoval),
           changingVariant("lossy-layers", "loses all pairs of two layers", losePairsOfTwoLayers)};
 }
 

@@ -1,4 +1,4 @@
-// Algorithms that are wrong once in a while: see faulty_algorithm.cpp.
+// Algorithms that are wrong occasionally: see faulty_algorithm.cpp.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,8 @@
 
 namespace broadmark::faulty {
 
-/// "faulty", which misses pairs, and "faulty-extra", which reports false ones. In changing worlds
-/// "lossy-removal", which misses a pair when a body vanishes, and "lossy-layers", which misses
-/// those of two layers.
+/// "faulty" misses pairs, "faulty-extra" reports false pairs. In changing worlds, "lossy-removal"
+/// misses a pair when a body vanishes, and "lossy-layers" misses pairs of two layers.
 std::vector<Algorithm> variants();
 
 }  // namespace broadmark::faulty

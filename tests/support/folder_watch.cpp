@@ -32,7 +32,7 @@ void FolderWatch::add(int file) const {
 
 bool FolderWatch::waitUntil(const std::function<bool()>& condition, int process) const {
   for (bool has_ended = false;;) {
-    // First the watches, then the question: no change comes in between.
+    // Watches are added before the condition is tested, so that no change is missed.
     addFolders();
     if (condition()) return true;
     if (has_ended) return false;

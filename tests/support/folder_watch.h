@@ -1,4 +1,4 @@
-// Waits for what happens in a folder.
+// Waits for changes in a folder.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace broadmark::tests {
 
-/// Wakes at every change of what lies below a folder, and of other files.
+/// Wakes at every change below a folder, and of added files.
 class FolderWatch {
  public:
   explicit FolderWatch(std::filesystem::path folder);
@@ -16,8 +16,8 @@ class FolderWatch {
   /// Also wakes when this open file is written to, even one without a name.
   void add(int file) const;
 
-  /// Returns once `condition` holds; asks it after every change. False if `process`, a descriptor
-  /// of one, has ended before.
+  /// Returns once `condition` holds; tests it after every change. False if the process with the
+  /// descriptor `process` has ended before.
   bool waitUntil(const std::function<bool()>& condition, int process = -1) const;
 
  private:

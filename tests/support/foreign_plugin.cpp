@@ -1,4 +1,4 @@
-// A plug-in from another build: its headers were not the program's.
+// A plug-in built with other headers than the program.
 
 #include "broadmark/headers_hash.h"
 

@@ -1,4 +1,4 @@
-// Comparing pictures, with a tolerance for what drivers and processors may do differently.
+// Compares pictures, with a tolerance for differences between drivers and processors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,14 +12,15 @@
 
 namespace broadmark::tests {
 
-/// How many of a thousand pixels may differ in a picture of a scene.
-inline constexpr double kMaxOfScene = 1;
+/// Maximum of differing pixels per thousand, in a picture of a scene.
+inline constexpr double kMaxDifferencePerMille = 1;
 
-/// Whether two pictures look the same: at most `most` of a thousand pixels differ by more than
-/// 8/255 in any channel. Otherwise a picture of the differences (red on the faded first one) is
-/// written to the tests' temporary directory, as NAME-difference.png.
+/// Whether two pictures are the same: at most `max` of a thousand pixels differ by more than 8/255
+/// in any channel. Otherwise writes a picture of the differences (red on the faded first one) to
+/// the tests' temporary directory, as NAME-difference.png.
 inline testing::AssertionResult looksLike(const Picture& actual, const Picture& expected,
-                                          const std::string& name, double most = kMaxOfScene) {
+                                          const std::string& name,
+                                          double max = kMaxDifferencePerMille) {
   constexpr int kTolerance = 8;
   if (actual.width != expected.width || actual.height != expected.height) {
     return testing::AssertionFailure()
@@ -40,7 +41,7 @@ inline testing::AssertionResult looksLike(const Picture& actual, const Picture& 
     difference.rgba[pixel + 1] = difference.rgba[pixel + 2] = 0;
   }
   const std::size_t pixels = actual.rgba.size() / 4;
-  if (1000 * static_cast<double>(wrong) <= most * static_cast<double>(pixels))
+  if (1000 * static_cast<double>(wrong) <= max * static_cast<double>(pixels))
     return testing::AssertionSuccess();
   const auto path = std::filesystem::path(testing::TempDir()) / (name + "-difference.png");
   writePng(path, difference);
@@ -48,17 +49,17 @@ inline testing::AssertionResult looksLike(const Picture& actual, const Picture& 
          << name << ": " << wrong << " of " << pixels << " pixels differ, see " << path.string();
 }
 
-/// The same against a picture kept in the source tree. With BROADMARK_UPDATE_GOLDEN=1 in the
-/// environment that picture is written instead.
+/// Compares with a picture in the source tree. With BROADMARK_UPDATE_GOLDEN=1 in the environment,
+/// writes that picture instead.
 inline testing::AssertionResult looksLikeGolden(const Picture& actual,
                                                 const std::filesystem::path& golden,
-                                                double most = kMaxOfScene) {
+                                                double max = kMaxDifferencePerMille) {
   const char* update = std::getenv("BROADMARK_UPDATE_GOLDEN");
   if (update != nullptr && std::string(update) == "1") {
     writePng(golden, actual);
     return testing::AssertionSuccess();
   }
-  return looksLike(actual, readPng(golden), golden.stem().string(), most);
+  return looksLike(actual, readPng(golden), golden.stem().string(), max);
 }
 
 }  // namespace broadmark::tests

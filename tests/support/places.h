@@ -1,4 +1,4 @@
-// Where things lie that tests need, whatever folder they run in.
+// Paths of files that tests need, independent of the working directory.
 #pragma once
 
 #include <filesystem>
@@ -6,17 +6,17 @@
 
 namespace broadmark::places {
 
-/// A file of the source tree, by its path there.
+/// A file of the source tree, by its relative path.
 std::filesystem::path source(const std::string& path);
 /// The real program.
 std::string program();
 /// A plug-in with algorithms that are wrong on purpose.
 std::string faultyPlugin();
-/// A plug-in with an algorithm that crashes, hangs or fails otherwise when asked to.
+/// A plug-in with an algorithm that crashes, hangs or fails otherwise on request.
 std::string unrulyPlugin();
 /// A plug-in with a physics engine, `drift`.
 std::string enginePlugin();
-/// A plug-in that belongs to another version.
+/// A plug-in built for another version.
 std::string foreignPlugin();
 /// A library that makes system calls under the program fail; "" in builds with sanitizers.
 std::string faultInjection();

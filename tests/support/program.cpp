@@ -23,7 +23,7 @@ namespace broadmark::tests {
 namespace {
 
 std::string contents(std::FILE* file) {
-  // The program writes at the position that it shares with us: reading must not move that.
+  // The program shares its file offset with this process: reading must not move it.
   std::string text(1 << 12, '\0');
   std::size_t size = 0;
   while ((size = readAll(::fileno(file), std::as_writable_bytes(std::span(text)), 0)) ==
@@ -44,7 +44,7 @@ FileDescriptor processDescriptor(pid_t process) {
 }
 
 Program::Program(const std::filesystem::path& directory, const Arguments& arguments,
-                 const Surroundings& around)
+                 const ProgramEnvironment& around)
     : directory_(directory) {
   std::string program = places::program();
   std::vector<char*> argv = {program.data()};
@@ -63,17 +63,17 @@ Program::~Program() {
 }
 
 std::vector<pid_t> Program::children() const {
-  std::vector<pid_t> all;
-  std::error_code none;  // a thread may end meanwhile
+  std::vector<pid_t> processes;
+  std::error_code ignored;  // a thread may end meanwhile
   const std::filesystem::path threads = fmt::format("/proc/{}/task", pid_);
-  for (const auto& thread : std::filesystem::directory_iterator(threads, none)) {
+  for (const auto& thread : std::filesystem::directory_iterator(threads, ignored)) {
     std::ifstream list(thread.path() / "children");
-    all.insert(all.end(), std::istream_iterator<pid_t>(list), {});
+    processes.insert(processes.end(), std::istream_iterator<pid_t>(list), {});
   }
-  return all;
+  return processes;
 }
 
-bool Program::runs() {
+bool Program::isRunning() {
   if (pid_ > 0 && ::waitpid(pid_, &wait_status_, WNOHANG) == pid_) pid_ = 0;
   return pid_ > 0;
 }
@@ -94,12 +94,12 @@ bool Program::waitForText(const std::string& text, int times) const {
   });
 }
 
-Ended Program::wait() {
+ProgramResult Program::wait() {
   if (pid_ > 0) ::waitpid(pid_, &wait_status_, 0);
   pid_ = 0;
   const int status =
       WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
-  Ended ended{.status = status, .out = contents(out_.get())};
+  ProgramResult ended{.status = status, .out = contents(out_.get())};
   std::istringstream lines(contents(err_.get()));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("broadmark: warning: ")) {
@@ -111,19 +111,19 @@ Ended Program::wait() {
   return ended;
 }
 
-void Program::enter(const std::filesystem::path& directory, const Surroundings& around,
+void Program::enter(const std::filesystem::path& directory, const ProgramEnvironment& around,
                     char** argv) const {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const auto& [name, value] : around.environment) ::setenv(name.c_str(), value.c_str(), 1);
-  const auto limit = [](auto resource, rlim_t most) {
-    const rlimit both{most, most};
+  const auto limit = [](auto resource, rlim_t max) {
+    const rlimit both{max, max};
     ::setrlimit(resource, &both);
   };
-  if (around.largest_file) {
-    limit(RLIMIT_FSIZE, *around.largest_file);
+  if (around.max_file_bytes) {
+    limit(RLIMIT_FSIZE, *around.max_file_bytes);
     std::signal(SIGXFSZ, SIG_IGN);
   }
-  if (around.most_memory) limit(RLIMIT_DATA, *around.most_memory);
+  if (around.max_memory_bytes) limit(RLIMIT_DATA, *around.max_memory_bytes);
   int out = ::fileno(out_.get());
   if (!around.standard_output.empty()) out = ::open(around.standard_output.c_str(), O_WRONLY);
   ::dup2(out, 1);

@@ -1,4 +1,4 @@
-// Runs the real program as its users do: in a directory of its own, from outside.
+// Runs the real program as its users do: as a process in its own directory.
 #pragma once
 
 #include <sys/resource.h>
@@ -17,52 +17,51 @@
 
 namespace broadmark::tests {
 
-/// What a program left when it ended.
-struct Ended {
+/// Exit status and output of a program that ended.
+struct ProgramResult {
   int status = 0;  ///< exit status; 128 + the signal that ended it
   std::string out;
-  std::string err;  ///< but for the lines below
-  /// "broadmark: warning: …": they depend on what else the machine does.
+  std::string err;  ///< without warnings
+  /// "broadmark: warning: …": they depend on the load of the machine.
   std::vector<std::string> warnings;
 };
 
-/// What may differ about the surroundings of a program.
-struct Surroundings {
-  std::map<std::string, std::string> environment;  ///< added to ours
-  std::optional<rlim_t> largest_file;              ///< bytes; beyond it writing fails (EFBIG)
-  std::optional<rlim_t> most_memory;               ///< bytes; beyond it there is none
-  std::string standard_output;                     ///< a file to print to instead of Ended::out
+/// Environment and resource limits of a program.
+struct ProgramEnvironment {
+  std::map<std::string, std::string> environment;  ///< added to the test's environment
+  std::optional<rlim_t> max_file_bytes;            ///< bytes; beyond it writing fails (EFBIG)
+  std::optional<rlim_t> max_memory_bytes;          ///< bytes; beyond it allocations fail
+  std::string standard_output;                     ///< output file, instead of ProgramResult::out
 };
 
-/// Readable, as poll() says, once the process has ended.
+/// A descriptor that poll() reports readable once the process has ended.
 FileDescriptor processDescriptor(pid_t process);
 
-/// A program that runs. It is killed when this goes, and when the test is.
+/// A running program. The destructor kills it, as does the end of the test process.
 class Program {
  public:
   using Arguments = std::vector<std::string>;
 
   Program(const std::filesystem::path& directory, const Arguments& arguments,
-          const Surroundings& around = {});
+          const ProgramEnvironment& around = {});
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
   [[nodiscard]] pid_t id() const { return pid_; }
   void signal(int number) const { ::kill(pid_, number); }
-  /// The processes that it has started.
+  /// Its child processes.
   [[nodiscard]] std::vector<pid_t> children() const;
 
-  /// Whether it has not ended yet.
-  [[nodiscard]] bool runs();
+  [[nodiscard]] bool isRunning();
 
-  /// Waits until `condition` on the files in its directory, or on what it prints, holds. False
-  /// when the program ended before.
+  /// Waits until `condition` holds; tests it when the program changes files in its directory or
+  /// prints. False if the program ended before.
   bool waitUntil(const std::function<bool()>& condition) const;
   /// Waits until it has printed `text` to standard error, `times` times. False as above.
   bool waitForText(const std::string& text, int times = 1) const;
 
-  Ended wait();
+  ProgramResult wait();
 
  private:
   struct Close {
@@ -71,7 +70,7 @@ class Program {
   using File = std::unique_ptr<std::FILE, Close>;
 
   /// The child's side; does not return.
-  [[noreturn]] void enter(const std::filesystem::path& directory, const Surroundings& around,
+  [[noreturn]] void enter(const std::filesystem::path& directory, const ProgramEnvironment& around,
                           char** argv) const;
 
   File out_{std::tmpfile()};

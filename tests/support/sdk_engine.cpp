@@ -1,4 +1,4 @@
-// Adds the physics engine of the plug-in that this test program is linked with to all others.
+// Adds the physics engine of the plug-in linked into this test program to the built-in engines.
 
 #include "broadmark/scenes/engine_plugin.h"
 

@@ -1,5 +1,5 @@
-// An algorithm that behaves badly on purpose, to show that everything else goes on. A plug-in,
-// never part of the program. Where it behaves it is brute force, and right.
+// An algorithm that fails on purpose, to show that everything else continues. A plug-in, never part
+// of the program. Otherwise it is correct brute force.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -22,13 +22,13 @@ constexpr std::size_t kMebibyte = std::size_t{1} << 20;
 
 [[noreturn]] void crash() {
   const rlimit none{0, 0};
-  ::setrlimit(RLIMIT_CORE, &none);  // nobody wants to read it
-  std::signal(SIGSEGV, SIG_DFL);    // sanitizers have a handler
+  ::setrlimit(RLIMIT_CORE, &none);  // no core dump
+  std::signal(SIGSEGV, SIG_DFL);    // sanitizers install a handler
   std::raise(SIGSEGV);
   std::abort();
 }
 
-/// Says so, for those that wait for it.
+/// Prints a line that tests wait for.
 [[noreturn]] void hang() {
   std::puts("hanging on purpose");
   std::fflush(stdout);
@@ -43,10 +43,10 @@ constexpr std::size_t kMebibyte = std::size_t{1} << 20;
   }
 }
 
-/// As a leak does, but for those who look for leaks in our own code.
-void keepMemory() {
-  static std::vector<std::unique_ptr<char[]>> kept;
-  kept.push_back(std::make_unique<char[]>(1000));
+/// Grows like a leak, but is not one for leak detectors.
+void retainMemory() {
+  static std::vector<std::unique_ptr<char[]>> retained;
+  retained.push_back(std::make_unique<char[]>(1000));
 }
 
 class Unruly final : public BoxBroadPhase {
@@ -101,11 +101,11 @@ class Unruly final : public BoxBroadPhase {
  private:
   void findPairs() override {
     for (const Pair pair : bruteForcePairs(boxes())) pairs().add(pair.a, pair.b);
-    // As many pairs more as it has been asked for in this process.
-    static int asked = 0;
+    // The n-th such answer in this process has n extra pairs.
+    static int answers = 0;
     if (deed_.value != "count" || now_ != frame_) return;
-    ++asked;
-    for (int i = 0; i < asked; ++i) pairs().add(0, 1);
+    ++answers;
+    for (int i = 0; i < answers; ++i) pairs().add(0, 1);
   }
 
   void misbehaveIn(std::string_view call) const {
@@ -117,7 +117,7 @@ class Unruly final : public BoxBroadPhase {
     if (deed == "throw-number") throw 42;
     if (deed == "exit") std::exit(3);
     if (deed == "allocate") allocateWithoutEnd();
-    if (deed == "keep") keepMemory();
+    if (deed == "keep") retainMemory();
     if (deed == "close") ::close_range(3, 100, 0);
     if (deed == "print") {
       std::puts("printed on purpose");

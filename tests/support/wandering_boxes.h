@@ -1,4 +1,4 @@
-// A scene that needs no physics: boxes that fly about in a room and are thrown back by its walls.
+// A scene without physics: boxes that move in a room and are reflected by its walls.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace broadmark::tests {
 
 /// Unit boxes, a tenth of the room's volume, at up to 0.1 a frame along each axis. Same arguments,
-/// same frames. A live source: it only goes forwards.
+/// same frames. A live source: frames are read in order only.
 class WanderingBoxes final : public FrameSource {
  public:
   WanderingBoxes(std::uint32_t objects, std::uint32_t frames, std::uint64_t seed) : seed_(seed) {

@@ -1,4 +1,4 @@
-// A host that runs its case as usual, for tests that change or watch one of the calls.
+// A host that forwards all calls, for tests that override or observe one of them.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class WrappedHost : public CaseExecutor {
   std::unique_ptr<CaseExecutor> inner_;
 };
 
-/// Calls the test before each frame is run.
+/// Calls `before_step` before each frame.
 class WatchedHost final : public WrappedHost {
  public:
   WatchedHost(const Case& test_case, const std::function<void()>& before_step)
@@ -47,7 +47,7 @@ class WatchedHost final : public WrappedHost {
   const std::function<void()>& before_step_;
 };
 
-/// Says that initialising and every frame took what the test wants, on whatever machine.
+/// Reports the given times for initialisation and frames, whatever the machine.
 class HostOfTimes final : public WrappedHost {
  public:
   struct Times {

@@ -1,4 +1,4 @@
-// The algorithms that Broadmark brings along.
+// The built-in algorithms.
 #pragma once
 
 #include <vector>

@@ -8,7 +8,7 @@ namespace broadmark {
 namespace {
 
 /// The face of a box by which a line enters it.
-Surface faceOf(const Aabb& box, const ViewProjection::Line& line) {
+Surface faceOf(const Aabb& box, const ViewProjection::Ray& line) {
   Surface face;
   double latest = -std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -26,7 +26,7 @@ Surface faceOf(const Aabb& box, const ViewProjection::Line& line) {
   return face;
 }
 
-std::optional<Surface> floorUnder(const Aabb& world, const ViewProjection::Line& line) {
+std::optional<Surface> floorUnder(const Aabb& world, const ViewProjection::Ray& line) {
   const double share = (world.min[1] - line.from[1]) / line.direction[1];
   if (!(share > 0) || !std::isfinite(share)) return {};
   Surface floor{.point = line.from + share * line.direction};
@@ -41,7 +41,7 @@ std::optional<Surface> floorUnder(const Aabb& world, const ViewProjection::Line&
 
 std::optional<Surface> surfaceUnder(std::span<const Aabb> boxes, const Aabb& world,
                                     const ViewProjection& sight, Pixel pixel, BodyMask visible) {
-  const ViewProjection::Line line = sight.through(pixel);
+  const ViewProjection::Ray line = sight.through(pixel);
   const auto picked =
       pickBody(boxes, sight.space(), sight.viewpoint(), pixel[0], pixel[1], visible);
   if (picked) return faceOf(boxes[picked->body], line);

@@ -42,7 +42,7 @@ class BrushStroke {
   [[nodiscard]] const scenes::Stroke& painted() const { return painted_; }
 
  private:
-  /// The box of a dab around the origin, where nobody is in the way.
+  /// The AABB of a dab around the origin in an empty scene.
   [[nodiscard]] Aabb reach(std::size_t most) const;
   [[nodiscard]] scenes::Paint nextPaint() const;
 

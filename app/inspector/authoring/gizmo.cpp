@@ -117,7 +117,7 @@ Point ViewProjection::eye() const {
   return Point(space_.origin.data()) + space_.side * pointOf(viewpoint_.camera.eye);
 }
 
-ViewProjection::Line ViewProjection::through(Pixel pixel) const {
+ViewProjection::Ray ViewProjection::through(Pixel pixel) const {
   return {eye(), pointOf(broadmark::rayThrough(viewpoint_, pixel[0], pixel[1]).direction)};
 }
 
@@ -189,7 +189,7 @@ GizmoDrag::Outcome GizmoDrag::at(Pixel pixel, const Tools& tools, bool snaps) co
 }
 
 double GizmoDrag::along(std::size_t axis, Pixel pixel) const {
-  const ViewProjection::Line line = sight_.through(pixel);
+  const ViewProjection::Ray line = sight_.through(pixel);
   const Point direction = place_.axis(axis);
   const Point to_centre = pointOf(place_.centre) - line.from;
   const double cosine = direction.dot(line.direction);
@@ -200,7 +200,7 @@ double GizmoDrag::along(std::size_t axis, Pixel pixel) const {
 }
 
 std::optional<Point> GizmoDrag::across(std::size_t axis, Pixel pixel) const {
-  const ViewProjection::Line line = sight_.through(pixel);
+  const ViewProjection::Ray line = sight_.through(pixel);
   const Point normal = place_.axis(axis);
   const Point to_centre = pointOf(place_.centre) - line.from;
   const double share = normal.dot(to_centre) / normal.dot(line.direction);

@@ -23,10 +23,10 @@ using Pixel = Eigen::Vector2f;
 
 inline Point pointOf(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-/// The way from the world to the picture, and back.
+/// Projects points of the world to pixels, and unprojects pixels to rays.
 class ViewProjection {
  public:
-  struct Line {
+  struct Ray {
     Point from;       ///< the eye
     Point direction;  ///< of any length
   };
@@ -36,8 +36,8 @@ class ViewProjection {
 
   /// Nothing for a point behind the eye.
   [[nodiscard]] std::optional<Pixel> pixelOf(const Point& point) const;
-  /// What is seen at a pixel.
-  [[nodiscard]] Line through(Pixel pixel) const;
+  /// The ray through a pixel.
+  [[nodiscard]] Ray through(Pixel pixel) const;
   [[nodiscard]] Point eye() const;
   /// The world length that a pixel covers there.
   [[nodiscard]] double pixelAt(const Point& point) const;
@@ -79,7 +79,7 @@ struct HandleShape {
   Handle handle = Handle::x;
   std::vector<Point> points;
   bool filled = false;
-  Point grip = Point::Zero();  ///< a point of it for the mouse to take
+  Point grip = Point::Zero();  ///< where the mouse can grab the handle
 };
 
 /// The handles of a tool. Those that could not be dragged are left out: an axis seen from its end,

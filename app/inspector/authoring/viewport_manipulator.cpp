@@ -1,5 +1,5 @@
-// All is drawn over the finished picture of the scene, which therefore need not be drawn anew while
-// the mouse moves.
+// The overlay is drawn over the finished picture of the scene, which therefore need not be redrawn
+// while the mouse moves.
 
 #include "inspector/authoring/viewport_manipulator.h"
 
@@ -32,7 +32,7 @@ Rgb colourOf(Handle handle, const Palette& theme) {
 }  // namespace
 
 void ViewportManipulator::look(const Seen& seen) {
-  const auto& shown = seen.session.playback.footage();
+  const auto& shown = seen.session.playback.source();
   const bool edited = document_ != shown;
   if (edited) {
     document_ = shown;
@@ -41,7 +41,7 @@ void ViewportManipulator::look(const Seen& seen) {
     cancel();
   }
   text_.clear();
-  if (seen.snapshot->footage == shown) ghosts_.clear();  // else the bodies are still to come
+  if (seen.snapshot->source == shown) ghosts_.clear();  // else the bodies are still to come
   lookAtGizmo(seen);
   lookAtBrush(seen);
 }
@@ -185,7 +185,7 @@ void ViewportManipulator::release(const Seen& seen) {
     painting_ = false;
     document.add([this] { return stroke_->painted(); });
   }
-  document_ = seen.session.playback.footage();  // the ghosts stay until it is seen
+  document_ = seen.session.playback.source();  // the ghosts stay until it is seen
   centred_.clear();
   stroke_.reset();
 }
@@ -212,7 +212,7 @@ void ViewportManipulator::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
     }
   }
   if (text_.empty() || !seen.mouse) return;
-  ui.letters.need(text_);
+  ui.glyphs.request(text_);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float pad = 5 * seen.scale;
   const ImVec2 extent = ImGui::CalcTextSize(text_.c_str());

@@ -41,7 +41,7 @@ class ViewportManipulator {
   [[nodiscard]] bool busy() const { return drag_.has_value() || painting_; }
   [[nodiscard]] bool painting() const { return painting_; }
 
-  /// Draws over the picture whose upper left corner that is, and notes the handles as widgets.
+  /// Draws over the picture with this upper left corner, and registers the handles as widgets.
   void draw(Ui& ui, const Seen& seen, ImVec2 corner) const;
 
   /// The numbers of what is being done: "x 1.5"; "": nothing is.

@@ -14,9 +14,9 @@ constexpr double kBetweenReports = 0.2;
 }  // namespace
 
 JobStatus DuelReport::status() const {
-  return {.doing = "A duel goes on.",
+  return {.doing = "A duel is running.",
           .values = {{"rounds", std::to_string(result.sides.empty() ? 0 : result.rounds())},
-                     {"verdict", result.places.empty() ? "" : verdictOf(result)}}};
+                     {"verdict", result.ranking.empty() ? "" : verdictOf(result)}}};
 }
 
 void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
@@ -27,8 +27,8 @@ void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
   DuelReport first;
   first.max_seconds = max_seconds;
   std::vector<DuelSide> sides;
-  for (const Case& run : cases) {
-    sides.push_back({caseName(run), run, make_host});
+  for (const Case& test_case : cases) {
+    sides.push_back({caseName(test_case), test_case, make_host});
     first.result.sides.push_back({.name = sides.back().name});
   }
   job.begin(std::move(first), [&job, sides = std::move(sides), frames = std::move(frames),

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Debian's, whose packages ours needs, before any other.
+/// Debian's Python has the packages that the report needs; it comes before any other.
 constexpr const char* kDebiansPython = "/usr/bin/python3";
 
 bool holdsPackage(const fs::path& folder) { return fs::exists(folder / "broadmark/__main__.py"); }

@@ -14,15 +14,16 @@ bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifferenc
     job.update([&](ExportReport& report) { report.now = now; });
   };
   const ShrunkCase shrunk = shrinkCase(
-      begun.run, source, known,
+      begun.test_case, source, known,
       {.progress = note, .cancelled = [&job] { return job.cancelled(); }, .make_host = make_host});
   if (!shrunk.minimal) return false;
   writePart(begun.file, source, shrunk.part);
   note({.trials = shrunk.trials,
         .bodies = shrunk.part.bodies.size(),
         .frames = shrunk.part.frames.size() - 1});
-  job.update(
-      [&](ExportReport& report) { report.command = reproducingCommand(begun.run, begun.file); });
+  job.update([&](ExportReport& report) {
+    report.command = reproducingCommand(begun.test_case, begun.file);
+  });
   return true;
 }
 
@@ -38,11 +39,11 @@ JobStatus ExportReport::status() const {
                      {"command", command}}};
 }
 
-void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames> source,
+void startExport(CaseExport& job, const Case& test_case, std::unique_ptr<IndexedFrames> source,
                  FrameDifference known, std::filesystem::path file,
                  const ExecutorFactory& make_host) {
   ExportReport first;
-  first.run = run;
+  first.test_case = test_case;
   first.file = std::move(file);
   first.whole_bodies = first.now.bodies = source->scene().objects;
   first.whole_frames = first.now.frames = known.frame;

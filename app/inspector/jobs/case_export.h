@@ -19,7 +19,7 @@ struct ExportReport : TaskReport {
   static constexpr const char* kName = "exporting a case";
   static constexpr const char* kPrefix = "export";
 
-  Case run;
+  Case test_case;
   std::filesystem::path file;
   std::size_t whole_bodies = 0;
   std::size_t whole_frames = 0;  ///< up to the wrong one
@@ -31,9 +31,9 @@ struct ExportReport : TaskReport {
 
 using CaseExport = Task<ExportReport>;
 
-/// Begins. `run` is wrong on `source`, used by nobody else, as `known` says. Throws InputError
-/// while another export is running.
-void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames> source,
+/// Starts an export: `test_case` answers wrongly on `source`, as `known` says. No other thread may
+/// use `source`. Throws InputError while another export is running.
+void startExport(CaseExport& job, const Case& test_case, std::unique_ptr<IndexedFrames> source,
                  FrameDifference known, std::filesystem::path file,
                  const ExecutorFactory& make_host = makeLocalHost);
 

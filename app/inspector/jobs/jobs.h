@@ -19,9 +19,9 @@ class Jobs {
  public:
   explicit Jobs(ExecutorFactory host_maker) : make_host(std::move(host_maker)) {}
 
-  template <class Kind>
-  [[nodiscard]] Kind& get() {
-    return std::get<Kind>(jobs_);
+  template <class JobType>
+  [[nodiscard]] JobType& get() {
+    return std::get<JobType>(jobs_);
   }
   [[nodiscard]] const std::vector<Job*>& all() const { return all_; }
   [[nodiscard]] bool running() const { return std::ranges::any_of(all_, &Job::running); }

@@ -14,8 +14,8 @@
 namespace broadmark::panels::algorithms {
 namespace {
 
-constexpr float kListWidth = 260;   // units: of the algorithms to choose from
-constexpr float kListHeight = 360;  // likewise
+constexpr float kListWidth = 260;   // units, of the list of algorithms to add
+constexpr float kListHeight = 360;  // units, of that list
 
 /// A family's algorithms, to choose from.
 struct Family {
@@ -47,15 +47,15 @@ class AlgorithmsPanel final : public Panel {
     ui.checkbox("stop at a mismatch", session.mismatches.stop_at_mismatch,
                 "Stays at the first frame in which an algorithm is wrong",
                 session.mismatches.check);
-    if (session.lanes.list.empty()) {
+    if (session.tracks.list.empty()) {
       ImGui::Spacing();
       ui.paragraph("No algorithm is chosen: overlaps are the oracle's.");
     }
     int removed = 0;
-    for (LaneEdit& lane : session.lanes.list) {
-      if (!drawLane(lane)) removed = lane.number;
+    for (TrackEdit& track : session.tracks.list) {
+      if (!drawTrack(track)) removed = track.number;
     }
-    if (removed != 0) session.lanes.remove(removed);
+    if (removed != 0) session.tracks.remove(removed);
   }
 
  private:
@@ -78,11 +78,11 @@ class AlgorithmsPanel final : public Panel {
     if (add) chosen = marked_;
     ImGui::BeginChild("list", {kListWidth * ui.scale, kListHeight * ui.scale}, false,
                       ImGuiWindowFlags_NavFlattened);
-    for (const Family& family : familiesOf(session.lanes.algorithms())) {
+    for (const Family& family : familiesOf(session.tracks.algorithms())) {
       drawFamily(family, chosen);
     }
     ImGui::EndChild();
-    for (const std::string& id : chosen) session.lanes.add(id);
+    for (const std::string& id : chosen) session.tracks.add(id);
     if (!chosen.empty()) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
   }
@@ -110,45 +110,45 @@ class AlgorithmsPanel final : public Panel {
   }
 
   /// Returns whether it is to be kept.
-  bool drawLane(LaneEdit& lane) {
-    const std::string& id = lane.run.algorithm.id;
+  bool drawTrack(TrackEdit& track) {
+    const std::string& id = track.test_case.algorithm.id;
     const auto scope = ui.scope(id);
-    ImGui::PushID(lane.number);
+    ImGui::PushID(track.number);
     bool keep = true;
     const bool open = ImGui::CollapsingHeader(id.c_str(), &keep, ImGuiTreeNodeFlags_DefaultOpen);
     ui.note("header");
-    ui.tooltip(lane.run.algorithm.summary.c_str());
+    ui.tooltip(track.test_case.algorithm.summary.c_str());
     if (open) {
       bool changed = false;
-      bool shown = session.lanes.shown() == lane.number;
+      bool shown = session.tracks.shown() == track.number;
       if (ui.checkbox("show its answer", shown, "The view shows what this algorithm reports")) {
-        session.lanes.show(shown ? lane.number : 0);
+        session.tracks.show(shown ? track.number : 0);
       }
-      changed |= drawExecution(lane.run);
-      changed |= ui.parameters(*lane.parameters);
-      if (changed) session.lanes.changed();
+      changed |= drawExecution(track.test_case);
+      changed |= ui.parameters(*track.parameters);
+      if (changed) session.tracks.changed();
       if (ui.button("Remove")) keep = false;
     }
     ImGui::PopID();
     return keep;
   }
 
-  bool drawExecution(Case& run) {
+  bool drawExecution(Case& test_case) {
     bool changed = false;
-    if (run.algorithm.traits.vectorised) {
+    if (test_case.algorithm.traits.vectorised) {
       const std::vector<Isa> isas = supportedIsas();
       std::vector<std::string> names;
       for (const Isa isa : isas) names.emplace_back(isaName(isa));
-      auto chosen = static_cast<std::size_t>(std::ranges::find(isas, run.isa) - isas.begin());
+      auto chosen = static_cast<std::size_t>(std::ranges::find(isas, test_case.isa) - isas.begin());
       if (ui.combo("isa", chosen, names, "Instruction set of its kernels")) {
-        run.isa = isas[chosen];
+        test_case.isa = isas[chosen];
         changed = true;
       }
     }
-    if (run.algorithm.traits.parallel) {
-      std::int64_t threads = run.threads;
+    if (test_case.algorithm.traits.parallel) {
+      std::int64_t threads = test_case.threads;
       if (ui.integer("threads", threads, 1, 256, "Threads that share the work")) {
-        run.threads = static_cast<int>(threads);
+        test_case.threads = static_cast<int>(threads);
         changed = true;
       }
     }
@@ -161,7 +161,7 @@ class AlgorithmsPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Algorithms", Place::left,
+extern const PanelKind kind = {"Algorithms", DockArea::left,
                                "Which algorithms run, and with which parameters",
                                make<AlgorithmsPanel>};
 

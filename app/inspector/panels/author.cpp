@@ -105,7 +105,7 @@ class AuthorPanel final : public Panel {
       document_.leave([this] { document_.start({}); });
     }
     if (first.button("From this frame", "Makes a scene of the frame that is shown",
-                     session.playback.footage() && !document_.atRest())) {
+                     session.playback.source() && !document_.atRest())) {
       document_.leave([this] { document_.startFromFrame(); });
     }
     ButtonRow second(ui, 3);
@@ -272,8 +272,10 @@ class AuthorPanel final : public Panel {
     ImGui::PushID("steps");
     ui.number("move by", document_.tools.move_step, 1e-6, 1e6,
               "Step of the gizmo when it snaps, in world units");
-    ui.number("turn by", document_.tools.turn_step, 0.1, 180, "Likewise, in degrees");
-    ui.number("scale by", document_.tools.scale_step, 0.01, 10, "Likewise, of the factor");
+    ui.number("turn by", document_.tools.turn_step, 0.1, 180,
+              "Rotation step of the gizmo and of the keys, in degrees");
+    ui.number("scale by", document_.tools.scale_step, 0.01, 10,
+              "Scale step of the gizmo and of the keys, as a factor");
     ImGui::PopID();
   }
 
@@ -311,7 +313,7 @@ class AuthorPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Author", Place::left, "Putting a scene together, body by body",
+extern const PanelKind kind = {"Author", DockArea::left, "Putting a scene together, body by body",
                                make<AuthorPanel>};
 
 }  // namespace broadmark::panels::author

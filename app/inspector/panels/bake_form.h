@@ -76,15 +76,15 @@ class BakeForm : BatchForm {
     const auto scope = ui.scope(name);
     const float half = ImGui::GetContentRegionAvail().x / 2;
     int column = 0;
-    for (const std::string& each : all) {
+    for (const std::string& choice : all) {
       if (column++ % 2 == 1) ImGui::SameLine(half);
-      bool marked = std::ranges::find(chosen, each) != chosen.end();
-      if (!ui.checkbox(each.c_str(), marked)) continue;
+      bool marked = std::ranges::find(chosen, choice) != chosen.end();
+      if (!ui.checkbox(choice.c_str(), marked)) continue;
       stale_ = true;
       if (marked) {
-        chosen.push_back(each);
+        chosen.push_back(choice);
       } else {
-        std::erase(chosen, each);
+        std::erase(chosen, choice);
       }
     }
   }

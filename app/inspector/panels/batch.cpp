@@ -28,7 +28,7 @@ class BatchPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Batch", Place::left, "Baking many recordings, running many cases",
-                               make<BatchPanel>};
+extern const PanelKind kind = {"Batch", DockArea::left,
+                               "Baking many recordings, running many cases", make<BatchPanel>};
 
 }  // namespace broadmark::panels::batch

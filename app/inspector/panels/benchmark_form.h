@@ -28,7 +28,7 @@ class BenchmarkForm : BatchForm {
     if (drawStart(benchmark, "Runs in the background; best while nothing is played",
                   "Keeps the cases that are finished")) {
       session.notices.attempt([&] {
-        startBenchmark(benchmark, request(), session.lanes.algorithms(), session.jobs.make_host);
+        startBenchmark(benchmark, request(), session.tracks.algorithms(), session.jobs.make_host);
       });
     }
     ImGui::BeginDisabled(running);
@@ -69,13 +69,14 @@ class BenchmarkForm : BatchForm {
     ui.tooltip("Ids, families, patterns, or all, as --algorithm takes them");
     if (wideButton("Those in Algorithms", "Takes what the panel Algorithms holds")) {
       algorithms_.clear();
-      for (const LaneEdit& lane : session.lanes.list) {
-        algorithms_ += (algorithms_.empty() ? "" : ", ") + lane.run.algorithm.id;
+      for (const TrackEdit& track : session.tracks.list) {
+        algorithms_ += (algorithms_.empty() ? "" : ", ") + track.test_case.algorithm.id;
       }
     }
     ui.text("threads", threads_, "1, 2");
     ui.tooltip("Of parallel algorithms; each number makes a case");
-    ui.integer("repetitions", repetitions_, 1, 1000, "How often each case is run, in turns");
+    ui.integer("repetitions", repetitions_, 1, 1000,
+               "How often each case is run, interleaved with the others");
     ui.combo("check", check_, kCheckModes.names(),
              "full: exact pairs in every frame; hash: counts and hashes; off");
     ui.text("results", results_, "results.json");
@@ -125,7 +126,7 @@ class BenchmarkForm : BatchForm {
     ui.heading("To run");
     try {
       const RunRequest request = this->request();
-      const auto cases = selectCases(request.cases, {}, session.lanes.algorithms());
+      const auto cases = selectCases(request.cases, {}, session.tracks.algorithms());
       ui.paragraph(fmt::format("{} on {}", counted(cases.size(), "case"),
                                counted(request.sources.size(), "recording")));
     } catch (const InputError& error) {

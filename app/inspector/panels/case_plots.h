@@ -84,8 +84,8 @@ class CasePlots : PanelContext {
     }
     const auto curves = firstOf(results.curves(phase()), "marked");
     const Palette& theme = ui.theme;
-    const FrameProviderRequest* open = session.playback.footage().get();
-    const bool is_open = open != nullptr && open->source == FootageSource::results;
+    const FrameProviderRequest* open = session.playback.source().get();
+    const bool is_open = open != nullptr && open->origin == FrameOrigin::results;
     std::vector<PlotCurve> plotted;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     const auto& recording = results.rows()[curves.front().row].recording;

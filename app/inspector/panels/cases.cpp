@@ -57,7 +57,7 @@ class CasesPanel final : public Panel {
     ImGui::SetNextItemWidth(110 * ui.scale);
     ImGui::InputTextWithHint("##search", "search", &searched_);
     ui.note("search");
-    ui.tooltip("Lists the cases whose id contains this");
+    ui.tooltip("Lists only cases with this text in their id");
     ImGui::SameLine();
     ui.checkbox("wrong only", only_wrong_, "Lists the cases that gave a wrong answer");
     results.filter(searched_, only_wrong_);
@@ -186,9 +186,9 @@ class CasesPanel final : public Panel {
 
   /// The cell that opens the case, across the whole row.
   void drawOpener(Row& row, std::optional<Rgb> rgb, bool first) {
-    const FrameProviderRequest* open = session.playback.footage().get();
+    const FrameProviderRequest* open = session.playback.source().get();
     const bool is_open =
-        open != nullptr && open->source == FootageSource::results && open->title == row.result.id;
+        open != nullptr && open->origin == FrameOrigin::results && open->title == row.result.id;
     const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id
                                                  : "Cannot be opened: " + row.obstacle;
     const std::string label = fmt::format("{}###{}", row.algorithm, row.result.id);
@@ -216,7 +216,7 @@ class CasesPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Cases", Place::bottom,
+extern const PanelKind kind = {"Cases", DockArea::bottom,
                                "The cases of a results file: their times, and each of them again",
                                make<CasesPanel>};
 

@@ -1,4 +1,4 @@
-// What the two views tell apart: who finds what, and who is slower where.
+// The differences between the two views: pairs that only one of them shows, and frame times.
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "inspector/panels/panel.h"
-#include "inspector/session/lane_statistics.h"
+#include "inspector/session/track_statistics.h"
 #include "inspector/session/wrong_pair.h"
 #include "support/words.h"
 
@@ -26,8 +26,8 @@ class ComparePanel final : public Panel {
     if (!session.second) {
       ui.paragraph(
           "A second view beside the first one shows another algorithm's answer, another frame or "
-          "another recording. Here stands then who finds what, and who is slower where.");
-      if (ui.button("Second view", "As the switch of the same name in Look (V)")) {
+          "another recording. This panel then compares their pairs and times.");
+      if (ui.button("Second view", "Toggle the second view (V)")) {
         session.showSecond(true);
       }
       return;
@@ -35,7 +35,7 @@ class ComparePanel final : public Panel {
     const SplitPane parts{
         .share = kPairsShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = times_alone_};
     if (!parts.both()) {
-      ui.toggle("Times", times_alone_, "Who is slower where, in place of who finds what");
+      ui.toggle("Times", times_alone_, "Compare frame times instead of pairs");
     }
     parts.draw([&] { drawPairs(); }, [&] { drawTimes(); });
   }
@@ -52,7 +52,7 @@ class ComparePanel final : public Panel {
     ImGui::SameLine();
     ui.coloured(ui.theme.second_only,
                 fmt::format("{} second only", comparison->second_only.size()));
-    ui.tooltip("Look colours the bodies of these pairs: First and second view");
+    ui.tooltip("The panel Display colours the bodies of these pairs: First and second view");
     ImGui::BeginChild("list", {0, 0}, true, ImGuiWindowFlags_NavFlattened);
     const std::size_t firsts = comparison->first_only.size();
     clipped(firsts + comparison->second_only.size(), [&](std::size_t row) {
@@ -78,22 +78,22 @@ class ComparePanel final : public Panel {
   }
 
   void drawTimes() {
-    const LaneReport* const first = laneOf(progress->lanes, session.lanes.shown());
-    const LaneReport* const second = laneOf(progress->lanes, session.second->lane);
-    if (first == nullptr || second == nullptr || first == second || session.second->footage) {
+    const TrackReport* const first = trackOf(progress->tracks, session.tracks.shown());
+    const TrackReport* const second = trackOf(progress->tracks, session.second->track);
+    if (first == nullptr || second == nullptr || first == second || session.second->source) {
       ui.faintParagraph(
           "Times are compared where the views show two algorithms on the same recording.");
       return;
     }
     summarise(*first, *second);
     if (!ratios_.highest) {
-      ui.faintParagraph("Play some frames to see in which of them who is slower.");
+      ui.faintParagraph("Play some frames to compare their times.");
       return;
     }
     ui.plain(
         fittingText(fmt::format("{} takes {:.3g} times as long as {} (median); slower in {} of {}",
-                                first->spec.run.algorithm.id, ratios_.median,
-                                second->spec.run.algorithm.id, ratios_.first_slower,
+                                first->spec.test_case.algorithm.id, ratios_.median,
+                                second->spec.test_case.algorithm.id, ratios_.first_slower,
                                 counted(ratios_.first_slower + ratios_.second_slower, "frame")),
                     ImGui::GetContentRegionAvail().x));
     ui.note("median");
@@ -125,7 +125,7 @@ class ComparePanel final : public Panel {
   }
 
   /// Long recordings take a while: not for each picture.
-  void summarise(const LaneReport& first, const LaneReport& second) {
+  void summarise(const TrackReport& first, const TrackReport& second) {
     const std::array<int, 2> numbers = {first.spec.number, second.spec.number};
     const double now = ImGui::GetTime();
     if (numbers == summarised_ && now < summarise_next_) return;
@@ -136,15 +136,15 @@ class ComparePanel final : public Panel {
 
   bool times_alone_ = false;
   TimeRatios ratios_;
-  std::array<int, 2> summarised_{};  ///< lanes, by number
+  std::array<int, 2> summarised_{};  ///< tracks, by number
   double summarise_next_ = 0;        ///< seconds of the user interface
 };
 
 }  // namespace
 
 extern const PanelKind kind = {
-    "Compare", Place::bottom,
-    "The two views: which pairs only one of them shows, and who is slower where",
+    "Compare", DockArea::bottom,
+    "The two views: pairs that only one of them shows, and frames in which one is slower",
     make<ComparePanel>};
 
 }  // namespace broadmark::panels::compare

@@ -1,4 +1,4 @@
-// The algorithms take turns on what is open, frame by frame: which is faster, and how surely.
+// Interleaves the algorithms on the open scene, frame by frame: the faster one, and its interval.
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ class DuelPanel final : public Panel {
     }
     if (!report.result.ok()) return drawFailures(report.result);
     if (report.result.rounds() == 0) return;
-    if (!report.result.places.empty()) ui.plain(verdictOf(report.result));
+    if (!report.result.ranking.empty()) ui.plain(verdictOf(report.result));
     const SplitPane parts{.share = kTableShare,
                           .narrowest = kRoomForBoth * ui.scale,
                           .second_alone = histogram_alone_};
@@ -55,8 +55,8 @@ class DuelPanel final : public Panel {
                            report.max_seconds));
       return;
     }
-    const bool ready = session.playback.footage() && session.lanes.list.size() >= 2;
-    if (ui.button("Start", "Runs the algorithms in turns", 0, ready)) {
+    const bool ready = session.playback.source() && session.tracks.list.size() >= 2;
+    if (ui.button("Start", "Start the duel", 0, ready)) {
       session.startDuel(max_seconds_);
     }
     ImGui::SameLine();
@@ -87,18 +87,18 @@ class DuelPanel final : public Panel {
       return;
     }
     for (std::size_t row = 0; row < result.sides.size(); ++row) {
-      const DuelPlace* place = result.places.empty() ? nullptr : &result.places[row];
-      drawSide(result, place == nullptr ? row : place->side, place);
+      const DuelRank* rank = result.ranking.empty() ? nullptr : &result.ranking[row];
+      drawSide(result, rank == nullptr ? row : rank->side, rank);
     }
     ImGui::EndTable();
   }
 
-  void drawSide(const DuelResult& result, std::size_t side, const DuelPlace* place) {
+  void drawSide(const DuelResult& result, std::size_t side, const DuelRank* rank) {
     const std::vector<double>& seconds = result.sides[side].seconds;
     const double ratio =
-        place != nullptr ? place->ratio.value : quantile(result.ratios(side, 0), 0.5);
+        rank != nullptr ? rank->ratio.value : quantile(result.ratios(side, 0), 0.5);
     ImGui::TableNextRow();
-    ui.cell(place == nullptr ? "" : fmt::format("{}.", place->place));
+    ui.cell(rank == nullptr ? "" : fmt::format("{}.", rank->rank));
     ImGui::TableNextColumn();
     ImGui::PushID(static_cast<int>(side));
     if (ui.selectable(result.sides[side].name.c_str(), side == shown_,
@@ -109,7 +109,7 @@ class DuelPanel final : public Panel {
     ui.cell(durationText(quantile(seconds, 0.5)));
     ui.cell(durationText(quantile(seconds, 0)));
     ui.cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
-    ui.cell(side == 0 || place == nullptr ? "" : intervalText(place->ratio.ci95, 3));
+    ui.cell(side == 0 || rank == nullptr ? "" : intervalText(rank->ratio.ci95, 3));
   }
 
   /// Of how many rounds had which ratio; a line where both are as fast.
@@ -123,14 +123,13 @@ class DuelPanel final : public Panel {
 
   double max_seconds_ = 60;
   bool histogram_alone_ = false;
-  std::size_t shown_ = 1;  ///< whose ratios are in the histogram
+  std::size_t shown_ = 1;  ///< the side in the histogram
 };
 
 }  // namespace
 
 extern const PanelKind kind = {
-    "Duel", Place::bottom,
-    "Lets the algorithms take turns on what is open, until it is known which is faster",
-    make<DuelPanel>};
+    "Duel", DockArea::bottom,
+    "Interleaves the algorithms on the open scene until the faster one is known", make<DuelPanel>};
 
 }  // namespace broadmark::panels::duel

@@ -26,45 +26,45 @@ class MismatchesPanel final : public Panel {
   using Panel::Panel;
 
   void draw() override {
-    if (progress->lanes.empty()) {
+    if (progress->tracks.empty()) {
       ui.paragraph(
           "Add an algorithm: its answers are compared with the right ones here, frame by frame.");
     } else {
-      const LaneReport& lane = chooseLane();
-      drawVerdict(lane);
+      const TrackReport& track = chooseTrack();
+      drawVerdict(track);
       drawSearch();
-      drawLists(lane);
-      drawCase(lane);
+      drawLists(track);
+      drawCase(track);
     }
     drawExport();
     drawPair();
-    if (!progress->lanes.empty()) drawStructure();
+    if (!progress->tracks.empty()) drawStructure();
   }
 
  private:
-  /// The lane whose answer is shown, or else the first.
-  const LaneReport& chooseLane() {
-    const std::vector<LaneReport>& lanes = progress->lanes;
+  /// The track of the shown answer, or else the first.
+  const TrackReport& chooseTrack() {
+    const std::vector<TrackReport>& tracks = progress->tracks;
     std::vector<std::string> names;
     std::size_t chosen = 0;
-    for (const LaneReport& lane : lanes) {
-      if (lane.spec.number == session.lanes.shown()) chosen = names.size();
-      names.push_back(caseName(lane.spec.run));
+    for (const TrackReport& track : tracks) {
+      if (track.spec.number == session.tracks.shown()) chosen = names.size();
+      names.push_back(caseName(track.spec.test_case));
     }
-    if (ui.combo("##algorithm", chosen, names, "Whose answers are looked at",
+    if (ui.combo("##algorithm", chosen, names, "Algorithm to inspect",
                  ImGui::GetContentRegionAvail().x)) {
-      session.lanes.show(lanes[chosen].spec.number);
+      session.tracks.show(tracks[chosen].spec.number);
     }
-    return lanes[chosen];
+    return tracks[chosen];
   }
 
-  /// Whether the snapshot is this lane's answer, compared with the right one.
-  bool showsAnswerOf(const LaneReport& lane) {
+  /// Whether the snapshot is this track's answer, compared with the right one.
+  bool showsAnswerOf(const TrackReport& track) {
     const auto& seen = progress->snapshot;
-    return seen && seen->checked && seen->lane == lane.spec.number;
+    return seen && seen->checked && seen->track == track.spec.number;
   }
 
-  void drawVerdict(const LaneReport& lane) {
+  void drawVerdict(const TrackReport& track) {
     if (!session.mismatches.check) {
       ui.coloured(ui.theme.warning, "answers are not checked");
       ImGui::SameLine();
@@ -73,11 +73,11 @@ class MismatchesPanel final : public Panel {
       }
       return;
     }
-    if (!lane.spec.run.algorithm.traits.finds_pairs) {
+    if (!track.spec.test_case.algorithm.traits.finds_pairs) {
       ui.faint("it reports no pairs by design");
       return;
     }
-    if (!showsAnswerOf(lane)) {
+    if (!showsAnswerOf(track)) {
       ui.faint(progress->doing.empty() ? "no answer for this frame" : progress->doing.c_str());
       return;
     }
@@ -100,21 +100,21 @@ class MismatchesPanel final : public Panel {
     }
   }
 
-  void drawLists(const LaneReport& lane) {
+  void drawLists(const TrackReport& track) {
     const float height = kListRows * ImGui::GetTextLineHeightWithSpacing();
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::BeginChild("frames", {0.38F * width, height}, true, ImGuiWindowFlags_NavFlattened);
-    drawFrames(lane);
+    drawFrames(track);
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("pairs", {0, height}, true, ImGuiWindowFlags_NavFlattened);
-    drawPairs(lane);
+    drawPairs(track);
     ImGui::EndChild();
   }
 
-  void drawFrames(const LaneReport& lane) {
+  void drawFrames(const TrackReport& track) {
     std::vector<std::uint32_t> wrong;
-    const FrameValues& marks = lane.curves.mismatches;
+    const FrameValues& marks = track.curves.mismatches;
     for (auto frame = marks.firstKnown(0, marks.size()); frame;
          frame = marks.firstKnown(*frame + 1, marks.size())) {
       wrong.push_back(*frame);
@@ -128,8 +128,8 @@ class MismatchesPanel final : public Panel {
     });
   }
 
-  void drawPairs(const LaneReport& lane) {
-    if (!showsAnswerOf(lane)) return;
+  void drawPairs(const TrackReport& track) {
+    if (!showsAnswerOf(track)) return;
     const Snapshot& seen = *progress->snapshot;
     const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
     if (wrong.empty()) ui.faint("no wrong pairs");
@@ -152,8 +152,8 @@ class MismatchesPanel final : public Panel {
   }
 
   /// The button that begins an export.
-  void drawCase(const LaneReport& lane) {
-    const bool wrong = showsAnswerOf(lane) && progress->snapshot->difference.isMismatch() &&
+  void drawCase(const TrackReport& track) {
+    const bool wrong = showsAnswerOf(track) && progress->snapshot->difference.isMismatch() &&
                        !session.jobs.get<CaseExport>().running();
     if (wideButton("Export case…",
                    "Writes the smallest recording on which the algorithm is still wrong", wrong)) {
@@ -162,8 +162,8 @@ class MismatchesPanel final : public Panel {
                  .extensions = boxRecordingExtensions(),
                  .suggestion = fmt::format("{}{}", partName(progress->scene),
                                            recordingExtension(progress->scene)),
-                 .chosen = [this, run = lane.spec.run, seen = progress->snapshot](
-                               const auto& file) { session.exportCase(run, seen, file); }});
+                 .chosen = [this, test_case = track.spec.test_case, seen = progress->snapshot](
+                               const auto& file) { session.exportCase(test_case, seen, file); }});
     }
   }
 
@@ -225,9 +225,9 @@ class MismatchesPanel final : public Panel {
     const std::string unwanted = unwantedText(seen->scene.filter, pair.bodies);
     if (!unwanted.empty()) ui.coloured(ui.theme.warning, unwanted);
     if (isEmpty(pair.a) || isEmpty(pair.b)) {
-      for (const Track& track : seen->tracks) {
-        if (!isEmpty(track.boxes.back())) continue;
-        ui.coloured(ui.theme.bad, fmt::format("body {}: {}", track.body, absenceText(track)));
+      for (const Trail& trail : seen->trails) {
+        if (!isEmpty(trail.boxes.back())) continue;
+        ui.coloured(ui.theme.bad, fmt::format("body {}: {}", trail.body, absenceText(trail)));
       }
       return;
     }
@@ -242,44 +242,44 @@ class MismatchesPanel final : public Panel {
     const std::size_t axis = decidingAxis(pair.a, pair.b);
     const AxisRelation relation = relationOn(axis, pair.a, pair.b);
     constexpr NameTable kSentences{
-        {NamedValue{AxisRelation::Kind::overlap, "they overlap, least on"},
-         {AxisRelation::Kind::touch, "they overlap, just touching on"},
-         {AxisRelation::Kind::gap, "they are apart, most on"}}};
-    return fmt::format("{} {}", kSentences.nameOf(relation.kind), kAxes[axis]);
+        {NamedValue{AxisRelation::Type::overlap, "they overlap, least on"},
+         {AxisRelation::Type::touch, "they overlap, just touching on"},
+         {AxisRelation::Type::gap, "they are apart, most on"}}};
+    return fmt::format("{} {}", kSentences.nameOf(relation.type), kAxes[axis]);
   }
 
   void drawHistory(const BoxPair& pair) {
-    const std::vector<Track>& tracks = progress->snapshot->tracks;
-    if (tracks.size() != 2 || tracks[0].body != pair.bodies.a || tracks[1].body != pair.bodies.b) {
+    const std::vector<Trail>& trails = progress->snapshot->trails;
+    if (trails.size() != 2 || trails[0].body != pair.bodies.a || trails[1].body != pair.bodies.b) {
       return;
     }
-    const PairTrack track{tracks[0], tracks[1]};
+    const PairTrails trail{trails[0], trails[1]};
     ui.heading("History");
-    const auto began = track.overlapBegan();
+    const auto began = trail.overlapBegan();
     if (!began) {
-      ui.faint(fmt::format("frames {} to {}: apart at the end", tracks[0].first,
-                           tracks[0].first + track.size() - 1));
-    } else if (*began == tracks[0].first) {
+      ui.faint(fmt::format("frames {} to {}: apart at the end", trails[0].first,
+                           trails[0].first + trail.size() - 1));
+    } else if (*began == trails[0].first) {
       ui.faint(fmt::format("overlapping since frame {} or earlier", *began));
     } else {
       ui.faint(fmt::format("overlapping since frame {}", *began));
     }
-    if (const auto clicked = drawPairHistory(ui, track)) {
+    if (const auto clicked = drawPairHistory(ui, trail)) {
       session.playback.goTo(*clicked);
     }
   }
 
   void drawStructure() {
     ui.heading("Inside the algorithm");
-    ui.toggle("Show structure", session.view.structure,
+    ui.toggle("Show structure", session.display.structure,
               "Draws its cells, nodes or planes in the view, around the pair");
-    for (const LaneReport& lane : progress->lanes) {
-      if (lane.spec.number != session.lanes.shown()) continue;
-      if (lane.margin > 0) ui.fact("margin", fmt::format("{}", lane.margin));
+    for (const TrackReport& track : progress->tracks) {
+      if (track.spec.number != session.tracks.shown()) continue;
+      if (track.margin > 0) ui.fact("margin", fmt::format("{}", track.margin));
       const auto& seen = progress->snapshot;
       const Counts none;
-      const bool is_its = seen && seen->lane == lane.spec.number;
-      for (const auto* counts : {&lane.setup, is_its ? &seen->counters : &none}) {
+      const bool is_its = seen && seen->track == track.spec.number;
+      for (const auto* counts : {&track.setup, is_its ? &seen->counters : &none}) {
         for (const auto& [name, count] : *counts) ui.fact(name.c_str(), std::to_string(count));
       }
     }
@@ -288,7 +288,7 @@ class MismatchesPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Mismatches", Place::right,
+extern const PanelKind kind = {"Mismatches", DockArea::right,
                                "Pairs that are missed, false or invalid, and why",
                                make<MismatchesPanel>};
 

@@ -8,9 +8,9 @@
 namespace broadmark {
 namespace {
 
-Rgb relationColour(const Palette& theme, AxisRelation::Kind kind) {
+Rgb relationColour(const Palette& theme, AxisRelation::Type type) {
   constexpr Rgb Palette::*kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
-  return theme.*kColours[static_cast<std::size_t>(kind)];
+  return theme.*kColours[static_cast<std::size_t>(type)];
 }
 
 /// The shortest digits that give the same float again.
@@ -51,11 +51,11 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
     ui.coloured(ui.theme.second, fmt::format("body {}", pair.bodies.b));
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       const AxisRelation relation = relationOn(axis, pair.a, pair.b);
-      const Rgb rgb = relationColour(ui.theme, relation.kind);
+      const Rgb rgb = relationColour(ui.theme, relation.type);
       ImGui::TableNextRow();
       cell(ui, axis == deciding ? ui.theme.accent : ui.theme.faint, kAxes[axis], "");
       if (axis == deciding) ui.tooltip("The axis that decides");
-      const std::string kind(kRelations.nameOf(relation.kind));
+      const std::string kind(kRelations.nameOf(relation.type));
       const std::string extent = exactly(std::abs(static_cast<float>(relation.gap)));
       cell(ui, ui.theme.text, exactly(pair.a.min[axis]), exactly(pair.a.max[axis]));
       if (narrow) ui.coloured(rgb, kind);
@@ -95,7 +95,7 @@ void drawIntervals(Ui& ui, const BoxPair& pair) {
     };
     const float top = origin.y + static_cast<float>(axis) * row + 4 * unit;
     const AxisRelation relation = relationOn(axis, pair.a, pair.b);
-    const Rgb rgb = relationColour(ui.theme, relation.kind);
+    const Rgb rgb = relationColour(ui.theme, relation.type);
     labelAt({origin.x, top + bar - ImGui::GetTextLineHeight() / 2}, ui.theme.faint, kAxes[axis]);
     // What lies between the two, or is common to them; never too thin to be seen.
     float low = x(std::max(pair.a.min[axis], pair.b.min[axis]));
@@ -119,7 +119,7 @@ void drawIntervals(Ui& ui, const BoxPair& pair) {
   }
 }
 
-std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
+std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
   const float unit = ui.scale;
   const float row = 26 * unit;
   const float strip = ImGui::GetTextLineHeight();
@@ -130,7 +130,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
   const float height = moved_top + 2 * strip + 4 * unit;
   ImGui::InvisibleButton("history", {label + width, height});
   ui.note("history");
-  const std::size_t frames = track.size();
+  const std::size_t frames = trail.size();
   if (frames == 0) return {};
   const float step = width / static_cast<float>(frames);
   const auto left = [&](std::size_t i) { return origin.x + label + static_cast<float>(i) * step; };
@@ -138,15 +138,15 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
     return std::max(left(i) + unit, left(i + 1) - (step > 3 * unit ? unit : 0));
   };
 
-  const std::optional<std::uint32_t> began = track.overlapBegan();
+  const std::optional<std::uint32_t> began = trail.overlapBegan();
   if (began) {
-    plainRect({left(*began - track.a.first), origin.y},
+    plainRect({left(*began - trail.a.first), origin.y},
               {origin.x + label + width, origin.y + height}, ui.theme.good, 0.10F);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double most = 0;
     for (std::size_t i = 0; i < frames; ++i) {
-      const double gap = std::abs(relationOn(axis, track.a.boxes[i], track.b.boxes[i]).gap);
+      const double gap = std::abs(relationOn(axis, trail.a.boxes[i], trail.b.boxes[i]).gap);
       if (std::isfinite(gap)) most = std::max(most, gap);
     }
     const float top = origin.y + static_cast<float>(axis) * row;
@@ -154,18 +154,18 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
     labelAt({origin.x, zero - ImGui::GetTextLineHeight() / 2}, ui.theme.faint, kAxes[axis]);
     plainRect({origin.x + label, zero}, {origin.x + label + width, zero + 1}, ui.theme.faint, 0.4F);
     for (std::size_t i = 0; i < frames; ++i) {
-      if (isEmpty(track.a.boxes[i]) || isEmpty(track.b.boxes[i])) continue;
-      const AxisRelation relation = relationOn(axis, track.a.boxes[i], track.b.boxes[i]);
+      if (isEmpty(trail.a.boxes[i]) || isEmpty(trail.b.boxes[i])) continue;
+      const AxisRelation relation = relationOn(axis, trail.a.boxes[i], trail.b.boxes[i]);
       const double share = most > 0 ? relation.gap / most : 0;
       const float extent = static_cast<float>(share) * (row / 2 - 2 * unit);
       // Never too small to be seen.
       const float end =
           extent < 0 ? zero + std::max(-extent, 1.5F * unit) : zero - std::max(extent, 1.5F * unit);
       plainRect({left(i), std::min(zero, end)}, {right(i), std::max(zero, end)},
-                relationColour(ui.theme, relation.kind), 0.9F);
+                relationColour(ui.theme, relation.type), 0.9F);
     }
   }
-  const auto draw_moves = [&](const Track& body, float y, Rgb rgb) {
+  const auto draw_moves = [&](const Trail& body, float y, Rgb rgb) {
     const std::string name = fmt::format("{}", body.body);
     labelAt({origin.x, y + strip / 2 - ImGui::GetTextLineHeight() / 2}, rgb, name.c_str());
     for (std::size_t i = 0; i < frames; ++i) {
@@ -174,23 +174,23 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
                 movedAt(body, i) ? 0.9F : 0.15F);
     }
   };
-  draw_moves(track.a, origin.y + moved_top, ui.theme.first);
-  draw_moves(track.b, origin.y + moved_top + strip, ui.theme.second);
+  draw_moves(trail.a, origin.y + moved_top, ui.theme.first);
+  draw_moves(trail.b, origin.y + moved_top + strip, ui.theme.second);
 
   if (!ImGui::IsItemHovered()) return {};
   const float offset = (ImGui::GetIO().MousePos.x - origin.x - label) / step;
   const auto at =
       static_cast<std::size_t>(std::clamp(offset, 0.0F, static_cast<float>(frames - 1)));
   plainRect({left(at), origin.y}, {right(at), origin.y + height}, ui.theme.text, 0.18F);
-  const std::uint32_t frame = track.a.first + static_cast<std::uint32_t>(at);
+  const std::uint32_t frame = trail.a.first + static_cast<std::uint32_t>(at);
   std::string text = fmt::format("frame {}", frame);
-  for (const Track* body : {&track.a, &track.b}) {
+  for (const Trail* body : {&trail.a, &trail.b}) {
     if (isEmpty(body->boxes[at])) text += fmt::format("\nbody {} is absent", body->body);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (isEmpty(track.a.boxes[at]) || isEmpty(track.b.boxes[at])) break;
-    const AxisRelation relation = relationOn(axis, track.a.boxes[at], track.b.boxes[at]);
-    text += fmt::format("\n{}: {} {}", kAxes[axis], kRelations.nameOf(relation.kind),
+    if (isEmpty(trail.a.boxes[at]) || isEmpty(trail.b.boxes[at])) break;
+    const AxisRelation relation = relationOn(axis, trail.a.boxes[at], trail.b.boxes[at]);
+    text += fmt::format("\n{}: {} {}", kAxes[axis], kRelations.nameOf(relation.type),
                         exactly(std::abs(static_cast<float>(relation.gap))));
   }
   ImGui::SetTooltip("%s", text.c_str());

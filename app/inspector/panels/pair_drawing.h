@@ -20,8 +20,8 @@ struct BoxPair {
 void drawPairTable(Ui& ui, const BoxPair& pair);
 /// Their intervals as bars, one axis below the other, all at one scale.
 void drawIntervals(Ui& ui, const BoxPair& pair);
-/// Per axis and frame the gap (upwards) or overlap (downwards), and who moved; the last frame at
-/// the right end. Returns the frame that is clicked.
-std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track);
+/// Per axis and frame the gap (upwards) or overlap (downwards), and which body moved; the last
+/// frame is at the right end. Returns the frame that is clicked.
+std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail);
 
 }  // namespace broadmark

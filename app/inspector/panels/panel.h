@@ -15,10 +15,10 @@ namespace broadmark {
 
 class View;
 
-/// Where a panel stands: as a tab beside the others of its place.
-enum class Place { left, right, bottom };
-inline constexpr NameTable kPlaces{
-    {NamedValue{Place::left, "left"}, {Place::right, "right"}, {Place::bottom, "bottom"}}};
+/// The tab bar of a panel.
+enum class DockArea { left, right, bottom };
+inline constexpr NameTable kDockAreas{
+    {NamedValue{DockArea::left, "left"}, {DockArea::right, "right"}, {DockArea::bottom, "bottom"}}};
 
 /// What a panel draws with and works on, which outlives it.
 struct PanelContext {
@@ -28,8 +28,8 @@ struct PanelContext {
   FileDialog& files;                      ///< to ask for a file
   const RunProgress* progress = nullptr;  ///< of the picture being drawn
 
-  /// Of the curves of `progress`'s lanes.
-  [[nodiscard]] std::vector<Rgb> laneColours() const;
+  /// Of the curves of `progress`'s tracks.
+  [[nodiscard]] std::vector<Rgb> trackColours() const;
   /// Draws the frames that `zoom` shows into the rest of the panel. The mouse moves them, and goes
   /// to one if `plays` says that they are those of the playback.
   PlotResult plotFrames(const char* name, const std::vector<PlotCurve>& curves, PlotOptions options,
@@ -70,13 +70,13 @@ class Panel : protected PanelContext {
 /// What stands on a panel's tab, and how the panel is made.
 struct PanelKind {
   const char* name;
-  Place place;
+  DockArea area;
   const char* tooltip;
   std::unique_ptr<Panel> (*make)(const PanelContext& context);
 };
-template <class Kind>
+template <class PanelType>
 std::unique_ptr<Panel> make(const PanelContext& context) {
-  return std::make_unique<Kind>(context);
+  return std::make_unique<PanelType>(context);
 }
 
 struct PanelTab : PanelKind {

@@ -7,10 +7,10 @@
 
 namespace broadmark {
 
-std::vector<Rgb> PanelContext::laneColours() const {
+std::vector<Rgb> PanelContext::trackColours() const {
   std::vector<std::string_view> families;
-  for (const LaneReport& lane : progress->lanes) {
-    families.emplace_back(lane.spec.run.algorithm.family);
+  for (const TrackReport& track : progress->tracks) {
+    families.emplace_back(track.spec.test_case.algorithm.family);
   }
   return curveColours(families, ui.theme);
 }

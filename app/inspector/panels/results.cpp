@@ -11,10 +11,10 @@ namespace broadmark::panels::results {
 namespace {
 
 /// Mean total of the undisturbed frames, in nanoseconds; below 0: none.
-double meanTotal(const LaneReport& lane) {
+double meanTotal(const TrackReport& track) {
   double sum = 0;
   std::uint64_t count = 0;
-  for (const FrameRecord& record : lane.frames) {
+  for (const FrameRecord& record : track.frames) {
     if (!record.run || record.disturbed) continue;
     sum += static_cast<double>(record.times[Phase::total]);
     ++count;
@@ -27,15 +27,15 @@ class ResultsPanel final : public Panel {
   using Panel::Panel;
 
   void draw() override {
-    const std::vector<LaneReport>& lanes = progress->lanes;
-    if (lanes.empty()) {
+    const std::vector<TrackReport>& tracks = progress->tracks;
+    if (tracks.empty()) {
       ui.paragraph(
           "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
     }
     if (!ui.beginTable("results", columnNames(), 2)) return;
-    const std::vector<Rgb> colours = laneColours();
-    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(lanes[i], colours[i]);
+    const std::vector<Rgb> colours = trackColours();
+    for (std::size_t i = 0; i < tracks.size(); ++i) drawTrack(tracks[i], colours[i]);
     ImGui::EndTable();
   }
 
@@ -50,28 +50,28 @@ class ResultsPanel final : public Panel {
     return names;
   }
 
-  void drawLane(const LaneReport& lane, Rgb curve) {
-    const FrameRecord* const record = lane.record(session.playback.frame());
+  void drawTrack(const TrackReport& track, Rgb curve) {
+    const FrameRecord* const record = track.record(session.playback.frame());
     ImGui::TableNextRow();
-    ImGui::PushID(lane.spec.number);
+    ImGui::PushID(track.spec.number);
     ImGui::TableNextColumn();
-    const bool shown = session.lanes.shown() == lane.spec.number;
+    const bool shown = session.tracks.shown() == track.spec.number;
     const std::string label =
-        fmt::format("{}###{}", caseName(lane.spec.run), lane.spec.run.algorithm.id);
+        fmt::format("{}###{}", caseName(track.spec.test_case), track.spec.test_case.algorithm.id);
     if (ui.selectable(label.c_str(), shown, nullptr, curve)) {
-      session.lanes.show(lane.spec.number);
+      session.tracks.show(track.spec.number);
     }
     const auto time = [&](Phase phase, const char* mark) {
       const bool known = record != nullptr;
       ui.cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark
                     : "–");
     };
-    ui.cell(statusName(lane.status), lane.status == Status::ok ? ui.theme.good : ui.theme.bad);
-    ui.tooltip(lane.reason.c_str());
+    ui.cell(statusName(track.status), track.status == Status::ok ? ui.theme.good : ui.theme.bad);
+    ui.tooltip(track.reason.c_str());
     const bool disturbed = record != nullptr && record->disturbed;
     time(Phase::total, disturbed ? " *" : "");
     if (disturbed) ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
-    const double mean = meanTotal(lane);
+    const double mean = meanTotal(track);
     ui.cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
     ui.cell(record == nullptr ? "–" : std::to_string(record->counts[FrameCount::pairs]));
     for (const FrameCount which : {FrameCount::missed, FrameCount::false_pairs, FrameCount::invalid,
@@ -90,7 +90,7 @@ class ResultsPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Results", Place::bottom, "What each algorithm did in this frame",
+extern const PanelKind kind = {"Results", DockArea::bottom, "What each algorithm did in this frame",
                                make<ResultsPanel>};
 
 }  // namespace broadmark::panels::results

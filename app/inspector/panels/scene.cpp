@@ -16,13 +16,13 @@ class ScenePanel final : public Panel {
 
   void draw() override {
     const bool draft_is_open = session.draft.isOpen();
-    const bool anew = seen_ != session.playback.footage();
-    seen_ = session.playback.footage();
-    if (anew) parameters_ = sceneParametersOf(session.playback.footage().get());
+    const bool is_new = seen_ != session.playback.source();
+    seen_ = session.playback.source();
+    if (is_new) parameters_ = sceneParametersOf(session.playback.source().get());
     if (seen_) drawOpen(draft_is_open);
     // The parameters of a simulation that might be are not to be taken for those of what is open.
-    if (anew) {
-      ImGui::SetNextItemOpen(!seen_ || draft_is_open || seen_->source == FootageSource::simulation);
+    if (is_new) {
+      ImGui::SetNextItemOpen(!seen_ || draft_is_open || seen_->origin == FrameOrigin::simulation);
     }
     const bool open =
         ImGui::CollapsingHeader(draft_is_open ? "Its parameters###draft" : "New simulation###draft",
@@ -40,7 +40,7 @@ class ScenePanel final : public Panel {
     if (draft_is_open) return;
     for (const auto& [name, value] : parameters_) ui.fact(name.c_str(), value);
     if (!parameters_.empty()) return;
-    ui.faintParagraph(seen_->source == FootageSource::authored
+    ui.faintParagraph(seen_->origin == FrameOrigin::authored
                           ? "Its parameters stand in the panel Author."
                           : "With which parameters it was made is not known.");
   }
@@ -49,8 +49,8 @@ class ScenePanel final : public Panel {
     chooseScene();
     ImGui::Spacing();
     if (wideButton("Simulate",
-                   "Starts the scene anew with these parameters; frames are simulated as they are "
-                   "watched")) {
+                   "Restarts the scene with these parameters; frames are simulated as they are "
+                   "shown")) {
       session.notices.attempt([&] { session.draft.simulate(); });
     }
     ui.heading("Parameters");
@@ -72,12 +72,12 @@ class ScenePanel final : public Panel {
   }
 
   std::shared_ptr<const FrameProviderRequest> seen_;  ///< what was open in the last picture
-  ParameterValues parameters_;  ///< of that recording, as far as they are known
+  ParameterValues parameters_;                        ///< of the open scene; empty if unknown
 };
 
 }  // namespace
 
-extern const PanelKind kind = {"Scene", Place::left,
+extern const PanelKind kind = {"Scene", DockArea::left,
                                "What is open; built-in scenes: choose, adjust, simulate",
                                make<ScenePanel>};
 

@@ -53,8 +53,8 @@ class SelectionPanel final : public Panel {
     ui.heading(fmt::format("Body {}", body).c_str());
     drawGroups(snapshot.scene.filter, body);
     if (isEmpty(box)) {
-      const auto track = std::ranges::find(snapshot.tracks, body, &Track::body);
-      ui.paragraph(track != snapshot.tracks.end() ? absenceText(*track) : "absent");
+      const auto trail = std::ranges::find(snapshot.trails, body, &Trail::body);
+      ui.paragraph(trail != snapshot.trails.end() ? absenceText(*trail) : "absent");
       return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -144,7 +144,8 @@ class SelectionPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {
-    "Bodies", Place::right, "The selected bodies, and the scene as a whole", make<SelectionPanel>};
+extern const PanelKind kind = {"Bodies", DockArea::right,
+                               "The selected bodies, and the scene as a whole",
+                               make<SelectionPanel>};
 
 }  // namespace broadmark::panels::selection

@@ -12,7 +12,7 @@
 
 #include "broadmark/statistics/statistics.h"
 #include "inspector/panels/panel.h"
-#include "inspector/session/lane_statistics.h"
+#include "inspector/session/track_statistics.h"
 #include "support/words.h"
 
 namespace broadmark::panels::timeline {
@@ -26,14 +26,14 @@ class TimelinePanel final : public Panel {
   using Panel::Panel;
 
   void draw() override {
-    if (progress->lanes.empty()) {
+    if (progress->tracks.empty()) {
       ui.faintParagraph(
           "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
     }
-    if (!progress->footage) return;
+    if (!progress->source) return;
     drawControls();
     const auto curves = [&] { drawCurves(); };
-    if (!session.timeline.span() || progress->lanes.empty()) {
+    if (!session.timeline.span() || progress->tracks.empty()) {
       curves();
       return;
     }
@@ -56,7 +56,7 @@ class TimelinePanel final : public Panel {
     ui.checkbox("logarithmic", logarithmic_);
     Ui::besideIfRoom(65 * ui.scale);
     ui.checkbox("pairs", shows_pairs_,
-                "How many pairs overlap, as a thin line whose scale stands at the right");
+                "Number of overlapping pairs: the thin line, with its scale on the right");
     if (progress->population.size() > 0) {
       Ui::besideIfRoom(75 * ui.scale);
       ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
@@ -78,8 +78,8 @@ class TimelinePanel final : public Panel {
              "What a frame may take, in milliseconds: a line in the plot; 0: none");
     ImGui::SameLine();
     std::uint64_t over = 0;
-    for (const LaneReport& lane : progress->lanes) {
-      if (session.timeline.budget_ms > 0) over += framesOver(lane, session.timeline.budget_ms);
+    for (const TrackReport& track : progress->tracks) {
+      if (session.timeline.budget_ms > 0) over += framesOver(track, session.timeline.budget_ms);
     }
     ui.faint(fmt::format("ms: {} over", counted(over, "frame")));
     ui.note("over");
@@ -97,40 +97,40 @@ class TimelinePanel final : public Panel {
     if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
     summarise({first, last});
     drawStatistics();
-    const std::vector<LaneReport>& lanes = progress->lanes;
-    const LaneReport* const shown = laneOf(lanes, session.lanes.shown());
-    const std::ptrdiff_t which = shown == nullptr ? 0 : shown - lanes.data();
+    const std::vector<TrackReport>& tracks = progress->tracks;
+    const TrackReport* const shown = trackOf(tracks, session.tracks.shown());
+    const std::ptrdiff_t which = shown == nullptr ? 0 : shown - tracks.data();
     drawHistogram(ui, statistics_.at(static_cast<std::size_t>(which)).values,
                   [this](double value) { return valueText(value); });
   }
 
   /// Sorting long spans takes a while: not for each picture.
   void summarise(FrameSpan span) {
-    const auto& lanes = progress->lanes;
+    const auto& tracks = progress->tracks;
     const double now = ImGui::GetTime();
-    if (summarised_ == span && statistics_.size() == lanes.size() && now < summarise_next_) return;
+    if (summarised_ == span && statistics_.size() == tracks.size() && now < summarise_next_) return;
     summarised_ = span;
     summarise_next_ = now + 0.25;
     statistics_.clear();
-    for (const LaneReport& lane : lanes) {
-      statistics_.push_back(statisticsOf(valuesOf(lane), lane.curves.disturbed, span));
+    for (const TrackReport& track : tracks) {
+      statistics_.push_back(statisticsOf(valuesOf(track), track.curves.disturbed, span));
     }
   }
 
   void drawStatistics() const {
-    const std::vector<LaneReport>& lanes = progress->lanes;
-    const std::vector<Rgb> colours = laneColours();
+    const std::vector<TrackReport>& tracks = progress->tracks;
+    const std::vector<Rgb> colours = trackColours();
     const float height =
-        ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(lanes.size()) + 1.8F);
+        ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(tracks.size()) + 1.8F);
     if (!ui.beginTable("statistics",
                        {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}, 1,
                        height)) {
       return;
     }
-    for (std::size_t i = 0; i < lanes.size(); ++i) {
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
       const SpanStatistics& of = statistics_[i];
       ImGui::TableNextRow();
-      ui.cell(caseName(lanes[i].spec.run), colours[i]);
+      ui.cell(caseName(tracks[i].spec.test_case), colours[i]);
       for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
         ui.cell(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
       }
@@ -148,8 +148,8 @@ class TimelinePanel final : public Panel {
   }
 
   /// What is plotted.
-  [[nodiscard]] const FrameValues& valuesOf(const LaneReport& lane) const {
-    return quantity_ == 0 ? lane.curves.pairs : lane.curves.seconds[quantity_ - 1];
+  [[nodiscard]] const FrameValues& valuesOf(const TrackReport& track) const {
+    return quantity_ == 0 ? track.curves.pairs : track.curves.seconds[quantity_ - 1];
   }
 
   void drawCurves() {
@@ -158,15 +158,15 @@ class TimelinePanel final : public Panel {
     std::vector<PlotCurve> curves;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     PlotMarks disturbed{.label = "disturbed", .colour = theme.warning, .frames = {}};
-    const std::vector<Rgb> colours = laneColours();
-    for (const LaneReport& lane : progress->lanes) {
-      curves.push_back({.label = caseName(lane.spec.run),
+    const std::vector<Rgb> colours = trackColours();
+    for (const TrackReport& track : progress->tracks) {
+      curves.push_back({.label = caseName(track.spec.test_case),
                         .colour = colours[curves.size()],
-                        .values = &valuesOf(lane),
-                        .circled = &lane.curves.disturbed,
-                        .hidden = hidden_.contains(lane.spec.number)});
-      wrong.frames.push_back(&lane.curves.mismatches);
-      disturbed.frames.push_back(&lane.curves.disturbed);
+                        .values = &valuesOf(track),
+                        .circled = &track.curves.disturbed,
+                        .hidden = hidden_.contains(track.spec.number)});
+      wrong.frames.push_back(&track.curves.mismatches);
+      disturbed.frames.push_back(&track.curves.disturbed);
     }
     const PlotCurve pairs{.label = "pairs", .colour = theme.text, .values = &progress->pairs};
     const PlotCurve bodies{
@@ -186,11 +186,11 @@ class TimelinePanel final : public Panel {
         .marks = {wrong, disturbed}};
     const PlotResult done = plotFrames("plot", curves, options, timeline);
     if (done.dragged) timeline.select((*done.dragged)[0], (*done.dragged)[1]);
-    if (done.toggled) toggle(progress->lanes[*done.toggled].spec.number);
+    if (done.toggled) toggle(progress->tracks[*done.toggled].spec.number);
   }
 
-  void toggle(int lane) {
-    if (hidden_.erase(lane) == 0) hidden_.insert(lane);
+  void toggle(int track) {
+    if (hidden_.erase(track) == 0) hidden_.insert(track);
   }
 
   std::size_t quantity_ = kPhases.entries.size();  ///< 0: pairs; then the phases; the last: total
@@ -199,7 +199,7 @@ class TimelinePanel final : public Panel {
   bool shows_bodies_ = true;
   bool span_alone_ = false;
   std::set<int> hidden_;
-  std::vector<SpanStatistics> statistics_;  ///< of the lanes
+  std::vector<SpanStatistics> statistics_;  ///< of the tracks
   FrameSpan summarised_;                    ///< of which span
   double summarise_next_ = 0;               ///< seconds of the user interface
 };
@@ -207,7 +207,7 @@ class TimelinePanel final : public Panel {
 }  // namespace
 
 extern const PanelKind kind = {
-    "Timeline", Place::bottom,
+    "Timeline", DockArea::bottom,
     "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
     "at wrong and disturbed frames",
     make<TimelinePanel>};

@@ -13,7 +13,7 @@ constexpr RunPolicy kPolicy{.check = CheckMode::hash,
 
 }  // namespace
 
-void LaneCurves::set(std::uint32_t frame, const FrameRecord& record) {
+void TrackCurves::set(std::uint32_t frame, const FrameRecord& record) {
   for (std::size_t phase = 0; phase < seconds.size(); ++phase) {
     seconds[phase].set(frame,
                        static_cast<float>(1e-9 * static_cast<double>(record.times.values[phase])));
@@ -23,15 +23,15 @@ void LaneCurves::set(std::uint32_t frame, const FrameRecord& record) {
   mismatches.set(frame, record.mismatch ? 1 : FrameValues::kUnknown);
 }
 
-const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number) {
+const TrackReport* trackOf(const std::vector<TrackReport>& tracks, int number) {
   const auto found =
-      std::ranges::find(lanes, number, [](const LaneReport& lane) { return lane.spec.number; });
-  return found == lanes.end() ? nullptr : &*found;
+      std::ranges::find(tracks, number, [](const TrackReport& track) { return track.spec.number; });
+  return found == tracks.end() ? nullptr : &*found;
 }
 
-std::uint64_t framesOver(const LaneReport& lane, double ms) {
+std::uint64_t framesOver(const TrackReport& track, double ms) {
   return static_cast<std::uint64_t>(
-      std::ranges::count_if(lane.frames, [&](const FrameRecord& frame) {
+      std::ranges::count_if(track.frames, [&](const FrameRecord& frame) {
         return frame.run && static_cast<double>(frame.times[Phase::total]) > ms * 1e6;
       }));
 }
@@ -54,7 +54,7 @@ void AlgorithmTrack::restart(const SceneInfo& scene, const Frame& first) {
   report_.frame = 0;
   outdated_ = false;
   attempt([&] {
-    if (!run_) run_.emplace(spec().run, kPolicy, make_host_, cancelled_);
+    if (!run_) run_.emplace(spec().test_case, kPolicy, make_host_, cancelled_);
     if (run_->start(scene, first)) report_.setup = run_->setup();
   });
   if (report_.ended) return;
@@ -99,7 +99,7 @@ std::optional<FrameDifference> AlgorithmTrack::check(const Frame& frame, Oracle&
 }
 
 void AlgorithmTrack::requireChecked(std::uint32_t after) {
-  if (!spec().run.algorithm.traits.finds_pairs || after >= report_.frame) return;
+  if (!spec().test_case.algorithm.traits.finds_pairs || after >= report_.frame) return;
   outdated_ = !std::ranges::all_of(std::span(report_.frames).subspan(after, report_.frame - after),
                                    &FrameRecord::checked);
 }
@@ -107,9 +107,9 @@ void AlgorithmTrack::requireChecked(std::uint32_t after) {
 std::vector<Pair> AlgorithmTrack::answer() {
   std::vector<Pair> pairs;
   attempt([&] {
-    const PairRuns runs = run_->answer();
-    pairs.reserve(pairCount(runs));
-    for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+    const PairRuns answer = run_->answer();
+    pairs.reserve(pairCount(answer));
+    for (const PairRun part : answer) pairs.insert(pairs.end(), part.begin(), part.end());
   });
   return pairs;
 }
@@ -120,11 +120,11 @@ RecordedDrawing AlgorithmTrack::structure() {
   return drawing;
 }
 
-std::string formatFrameTable(const SceneInfo& scene, const std::vector<LaneReport>& lanes) {
+std::string formatFrameTable(const SceneInfo& scene, const std::vector<TrackReport>& tracks) {
   FrameTable table;
-  for (const LaneReport& lane : lanes) {
-    table.begin(beginCase(lane.spec.run, {.scene = scene}));
-    for (const FrameRecord& record : lane.frames) {
+  for (const TrackReport& track : tracks) {
+    table.begin(beginCase(track.spec.test_case, {.scene = scene}));
+    for (const FrameRecord& record : track.frames) {
       if (record.run) table.add(record);
     }
   }

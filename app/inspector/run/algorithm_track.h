@@ -16,51 +16,51 @@
 
 namespace broadmark {
 
-/// What one frame gave.
+/// The result of a frame.
 struct FrameRecord : FrameRow {
   bool run = false;  ///< false: nothing is known of this frame
   bool mismatch = false;
 };
 
-/// The records of a lane as curves.
-struct LaneCurves {
+/// The records of a track as curves.
+struct TrackCurves {
   std::array<FrameValues, kPhases.entries.size()> seconds;  ///< by phase
   FrameValues pairs;
-  FrameValues disturbed;   ///< 1 in such frames, unknown in others
-  FrameValues mismatches;  ///< likewise
+  FrameValues disturbed;   ///< 1 in disturbed frames, unknown in others
+  FrameValues mismatches;  ///< 1 in frames with a wrong answer, unknown in others
 
   void set(std::uint32_t frame, const FrameRecord& record);
 };
 
-/// A case that is looked at. The number tells apart two that are otherwise alike.
-struct LaneSpec {
+/// An inspected case. The number tells identical cases apart.
+struct TrackSpec {
   int number = 0;
-  Case run;
+  Case test_case;
 
   /// Whether both would do the same.
-  friend bool operator==(const LaneSpec& a, const LaneSpec& b) {
-    return a.number == b.number && a.run.device == b.run.device &&
-           caseName(a.run) == caseName(b.run);
+  friend bool operator==(const TrackSpec& a, const TrackSpec& b) {
+    return a.number == b.number && a.test_case.device == b.test_case.device &&
+           caseName(a.test_case) == caseName(b.test_case);
   }
 };
 
-/// Where a lane is, and how it fares.
-struct LaneState {
-  LaneSpec spec;
+/// Position and status of a track.
+struct TrackState {
+  TrackSpec spec;
   Status status = Status::ok;
   std::string reason;       ///< for every status but ok
   bool ended = false;       ///< it is not run any more: too slow, unsupported or broken
-  std::uint32_t frame = 0;  ///< up to which it has come
+  std::uint32_t frame = 0;  ///< the last frame that it has run
   std::int64_t initialize_ns = 0;
   float margin = 0;
   std::map<std::string, std::uint64_t> setup;     ///< counted once, in the initialisation
   std::map<std::string, std::uint64_t> counters;  ///< of work, in the last frame
 };
 
-/// What is known of a lane; a copy of it can be looked at while the lane works on.
-struct LaneReport : LaneState {
+/// The results of a track; a copy stays valid while the track advances.
+struct TrackReport : TrackState {
   std::vector<FrameRecord> frames;  ///< frame k at [k - 1]
-  LaneCurves curves;                ///< of these
+  TrackCurves curves;               ///< of `frames`
 
   /// The record of a frame, or null when nothing is known of it.
   [[nodiscard]] const FrameRecord* record(std::uint32_t index) const {
@@ -69,27 +69,27 @@ struct LaneReport : LaneState {
   }
 };
 
-/// The lane of this number, or null.
-const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number);
+/// The track of this number, or null.
+const TrackReport* trackOf(const std::vector<TrackReport>& tracks, int number);
 
 /// How many of the frames took longer.
-std::uint64_t framesOver(const LaneReport& lane, double ms);
+std::uint64_t framesOver(const TrackReport& track, double ms);
 
-/// The running lane: a CaseRun, which begins another pass when an earlier frame is wanted.
+/// The running track: a CaseRun, which starts another pass when an earlier frame is requested.
 class AlgorithmTrack {
  public:
-  /// A frame that takes longer, on average, ends the lane.
+  /// A frame that takes longer, on average, ends the track.
   static constexpr double kFrameLimitSeconds = 10;
 
-  /// `cancelled` ends what it waits for; the call then throws Cancelled.
-  explicit AlgorithmTrack(LaneSpec spec, ExecutorFactory make_host = makeLocalHost,
+  /// `cancelled` is polled during long calls; if true, they throw Cancelled.
+  explicit AlgorithmTrack(TrackSpec spec, ExecutorFactory make_host = makeLocalHost,
                           CancelQuery cancelled = {})
       : make_host_(std::move(make_host)), cancelled_(std::move(cancelled)) {
     report_.spec = std::move(spec);
   }
 
-  [[nodiscard]] const LaneReport& report() const { return report_; }
-  [[nodiscard]] const LaneSpec& spec() const { return report_.spec; }
+  [[nodiscard]] const TrackReport& report() const { return report_; }
+  [[nodiscard]] const TrackSpec& spec() const { return report_.spec; }
   /// Whether its instance is at this frame: it can be asked for its answer, and can run the next
   /// frame unless it has ended.
   [[nodiscard]] bool standsAt(std::uint32_t index) const {
@@ -105,8 +105,8 @@ class AlgorithmTrack {
   /// Compares the present answer with the right one; nothing when the algorithm is not checked.
   std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
 
-  /// Has it begin anew unless all frames that it has run after this one were checked, as far as it
-  /// can be.
+  /// Schedules a restart unless all frames run after this one were checked, as far as the
+  /// algorithm can be.
   void requireChecked(std::uint32_t after);
 
   // Only while standsAt() some frame.
@@ -119,14 +119,14 @@ class AlgorithmTrack {
   template <class Call>
   void attempt(Call&& call);
 
-  LaneReport report_;
+  TrackReport report_;
   ExecutorFactory make_host_;
   CancelQuery cancelled_;
   std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
-  bool outdated_ = false;       ///< it has to begin anew before it is used
+  bool outdated_ = false;       ///< has to restart before its next use
 };
 
-/// Of each lane every frame that has been run, as FrameTable writes it.
-std::string formatFrameTable(const SceneInfo& scene, const std::vector<LaneReport>& lanes);
+/// All frames that the tracks have run, in the format of FrameTable.
+std::string formatFrameTable(const SceneInfo& scene, const std::vector<TrackReport>& tracks);
 
 }  // namespace broadmark

@@ -33,7 +33,7 @@ std::int64_t take(const std::uint8_t*& at) {
 std::size_t bytesOf(const std::vector<Pair>& pairs) { return pairs.capacity() * sizeof(Pair); }
 
 /// Roughly: what stands beside the pairs.
-std::size_t bytesBeside(const SeenAnswer& answer) {
+std::size_t bytesBeside(const CachedAnswer& answer) {
   constexpr std::size_t kPerCounter = 100;
   std::size_t bytes = 500 + answer.counters.size() * kPerCounter;
   if (const auto& difference = answer.difference) {
@@ -69,9 +69,9 @@ std::vector<Pair> PackedPairs::unpacked() const {
   return pairs;
 }
 
-void AnswerCache::remember(int lane, std::uint32_t frame, const SeenAnswer& answer) {
-  const Key key{lane, frame};
-  if (const auto found = places_.find(key); found != places_.end()) drop(found->second);
+void AnswerCache::remember(int track, std::uint32_t frame, const CachedAnswer& answer) {
+  const Key key{track, frame};
+  if (const auto found = entries_.find(key); found != entries_.end()) drop(found->second);
   Kept kept{
       .key = key,
       .pairs = PackedPairs(answer.pairs),
@@ -83,38 +83,38 @@ void AnswerCache::remember(int lane, std::uint32_t frame, const SeenAnswer& answ
   while (bytes_ + kept.bytes > budget_bytes_) drop(kept_.begin());
   bytes_ += kept.bytes;
   kept_.push_back(std::move(kept));
-  places_[key] = std::prev(kept_.end());
+  entries_[key] = std::prev(kept_.end());
 }
 
-std::optional<SeenAnswer> AnswerCache::recall(int lane, std::uint32_t frame) const {
-  const auto found = places_.find({lane, frame});
-  if (found == places_.end()) return {};
-  SeenAnswer answer = found->second->rest;
+std::optional<CachedAnswer> AnswerCache::recall(int track, std::uint32_t frame) const {
+  const auto found = entries_.find({track, frame});
+  if (found == entries_.end()) return {};
+  CachedAnswer answer = found->second->rest;
   answer.pairs = found->second->pairs.unpacked();
   answer.right = found->second->right.unpacked();
   return answer;
 }
 
-bool AnswerCache::holds(int lane, std::uint32_t frame, bool judged) const {
-  const auto found = places_.find({lane, frame});
-  return found != places_.end() && (!judged || found->second->rest.judged);
+bool AnswerCache::holds(int track, std::uint32_t frame, bool judged) const {
+  const auto found = entries_.find({track, frame});
+  return found != entries_.end() && (!judged || found->second->rest.judged);
 }
 
-void AnswerCache::forget(int lane) {
-  auto at = places_.lower_bound({lane, 0});
-  while (at != places_.end() && at->first.first == lane) drop((at++)->second);
+void AnswerCache::forget(int track) {
+  auto at = entries_.lower_bound({track, 0});
+  while (at != entries_.end() && at->first.first == track) drop((at++)->second);
 }
 
 void AnswerCache::clear() {
   kept_.clear();
-  places_.clear();
+  entries_.clear();
   bytes_ = 0;
 }
 
-void AnswerCache::drop(Place place) {
-  bytes_ -= place->bytes;
-  places_.erase(place->key);
-  kept_.erase(place);
+void AnswerCache::drop(Entry entry) {
+  bytes_ -= entry->bytes;
+  entries_.erase(entry->key);
+  kept_.erase(entry);
 }
 
 }  // namespace broadmark

@@ -30,8 +30,8 @@ class PackedPairs {
   std::size_t count_ = 0;
 };
 
-/// What somebody answered for a frame, and what is right.
-struct SeenAnswer {
+/// An answer for a frame, and its difference from the right one.
+struct CachedAnswer {
   std::vector<Pair> pairs;
   bool judged = false;  ///< compared with the oracle's answer, if it can be
   std::optional<FrameDifference> difference;
@@ -44,17 +44,17 @@ struct SeenAnswer {
   }
 };
 
-/// The answers of all frames and lanes that fit in a budget; the oldest give way.
+/// The answers of all frames and tracks that fit in a budget; the oldest give way.
 class AnswerCache {
  public:
   explicit AnswerCache(std::size_t budget_bytes) : budget_bytes_(budget_bytes) {}
 
-  /// `lane`: its number; 0: the oracle. Replaces what was kept before.
-  void remember(int lane, std::uint32_t frame, const SeenAnswer& answer);
-  [[nodiscard]] std::optional<SeenAnswer> recall(int lane, std::uint32_t frame) const;
+  /// `track`: its number; 0: the oracle. Replaces what was kept before.
+  void remember(int track, std::uint32_t frame, const CachedAnswer& answer);
+  [[nodiscard]] std::optional<CachedAnswer> recall(int track, std::uint32_t frame) const;
   /// Whether there is one, which was judged if that is asked for.
-  [[nodiscard]] bool holds(int lane, std::uint32_t frame, bool judged) const;
-  void forget(int lane);
+  [[nodiscard]] bool holds(int track, std::uint32_t frame, bool judged) const;
+  void forget(int track);
   void clear();
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
@@ -64,17 +64,17 @@ class AnswerCache {
     Key key;
     PackedPairs pairs;
     PackedPairs right;
-    SeenAnswer rest;  ///< without its pairs
+    CachedAnswer rest;  ///< without its pairs
     std::size_t bytes = 0;
   };
-  using Place = std::list<Kept>::iterator;
+  using Entry = std::list<Kept>::iterator;
 
-  void drop(Place place);
+  void drop(Entry entry);
 
   std::size_t budget_bytes_;
   std::size_t bytes_ = 0;
   std::list<Kept> kept_;  ///< the oldest first
-  std::map<Key, Place> places_;
+  std::map<Key, Entry> entries_;
 };
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Drawing and timing take turns, so that neither disturbs the other.
+// Drawing and timing exclude each other, so that neither disturbs the other.
 #pragma once
 
 #include <chrono>

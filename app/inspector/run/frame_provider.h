@@ -56,7 +56,7 @@ class FrameProvider {
   std::shared_ptr<const FileDescriptor> kept_;  ///< what frames_ reads; null for a recording
 };
 
-/// Opens some footage, each time anew. Throws InputError.
-using FootageOpener = std::function<std::unique_ptr<FrameProvider>()>;
+/// Opens a source; each call returns a new provider. Throws InputError.
+using FrameProviderOpener = std::function<std::unique_ptr<FrameProvider>()>;
 
 }  // namespace broadmark

@@ -1,11 +1,10 @@
 // The thread that runs algorithms while the user interface stays free.
 //
-// The interface states a wish: what to look at, which algorithms, up to which frame. The thread
-// works towards it, one frame of one algorithm at a time, and takes up a changed wish in between.
-// Algorithms keep state from frame to frame, so each goes through all frames from the first: for an
-// earlier frame a fresh instance starts over. The answers of frames that have been seen are kept:
-// such a frame is shown at once, and algorithms are run again only where something else of them is
-// wanted.
+// The interface posts a request: a source, algorithms, a frame. The thread works towards it, one
+// frame of one algorithm at a time, and switches to a changed request in between. Algorithms have
+// state from frame to frame, so each runs all frames from the first: for an earlier frame a new
+// instance starts over. Answers of shown frames are cached: such a frame is shown at once, and
+// algorithms run again only for what the cache does not hold.
 #pragma once
 
 #include <chrono>
@@ -29,60 +28,57 @@
 
 namespace broadmark {
 
-/// What the second view shows. Of the open footage in the same frame the lanes have the answer
-/// already. For another frame, or other footage, the algorithm has an instance of its own, whose
-/// times count for nothing.
+/// Content of the second view. For the same source and frame the answer comes from the first view's
+/// tracks. For another frame or source the algorithm has a separate instance, which is not timed.
 struct SecondViewRequest {
-  std::shared_ptr<const FrameProviderRequest> footage;  ///< null: that of the first view
-  std::optional<std::uint32_t> frame;                   ///< nothing: that of the first view
-  int lane = 0;  ///< the number of the answer's track; 0: the oracle's
+  std::shared_ptr<const FrameProviderRequest> source;  ///< null: that of the first view
+  std::optional<std::uint32_t> frame;                  ///< nothing: that of the first view
+  int track = 0;  ///< the number of the answer's trail; 0: the oracle's
 
   friend bool operator==(const SecondViewRequest&, const SecondViewRequest&) = default;
 };
 
-/// What the interface wants.
+/// What the interface requests.
 struct ViewRequest {
-  std::shared_ptr<const FrameProviderRequest> footage;
-  std::vector<LaneSpec> lanes;
+  std::shared_ptr<const FrameProviderRequest> source;
+  std::vector<TrackSpec> tracks;
   std::uint32_t frame = 0;
-  bool playing = false;  ///< it goes on from there: what has been seen does not do
+  bool playing = false;  ///< continues from there, so cached answers are not enough
   bool check = true;     ///< compare every answer with the oracle's
   /// Stop at the first frame in which an algorithm is wrong…
   bool stop_at_mismatch = true;
   /// …after this one, up to which mismatches are known.
   std::optional<std::uint32_t> known_mismatch;
-  int shown_lane = 0;                  ///< whose answer is looked at, by number; none: the oracle's
-  bool structure = false;              ///< whether its structure is looked at, too
-  std::vector<std::uint32_t> tracked;  ///< bodies whose last frames are wanted
-  std::optional<SecondViewRequest> second = {};  ///< what the second view shows, if there is one
+  int shown_track = 0;     ///< number of the track with the shown answer; 0: the oracle's
+  bool structure = false;  ///< also show its structure
+  std::vector<std::uint32_t> trail_bodies;       ///< bodies to show over the last frames
+  std::optional<SecondViewRequest> second = {};  ///< nothing: no second view
 
   friend bool operator==(const ViewRequest&, const ViewRequest&) = default;
 };
 
 /// How far the thread has got.
 struct RunProgress {
-  std::shared_ptr<const FrameProviderRequest> footage;  ///< what is open
+  std::shared_ptr<const FrameProviderRequest> source;  ///< what is open
   std::string failure;  ///< why it could not be opened, or not be read on
   SceneInfo scene;
   std::uint32_t known_frames = 0;  ///< that exist already
   FrameOpener frames;              ///< opens them
   bool live = false;               ///< more can be simulated
-  /// How many bodies are present in each frame that has been looked at. Empty where nobody is ever
-  /// absent.
+  /// Bodies present, by frame that has been read. Empty if all bodies are always present.
   FrameValues population;
-  /// Likewise how many pairs overlap, as far as the oracle was asked; else how many an algorithm
-  /// reported.
+  /// Overlapping pairs, by frame: the oracle's count where it was computed, else an algorithm's.
   FrameValues pairs;
-  std::vector<LaneReport> lanes;
+  std::vector<TrackReport> tracks;
   std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
   std::shared_ptr<const Snapshot> second;    ///< of the second view; null: there is none
   std::string second_failure;                ///< why there is none
   /// Of the answers in both views; null: there are not two.
   std::shared_ptr<const PairComparison> comparison;
-  /// The frame at which all stay, as the lane of this number is wrong there.
+  /// The frame at which all stay, as the track of this number is wrong there.
   struct Stop {
     std::uint32_t frame = 0;
-    int lane = 0;
+    int track = 0;
   };
   std::optional<Stop> stop;
   std::string doing;   ///< "" when all is done
@@ -92,7 +88,7 @@ struct RunProgress {
 class RunThread {
  public:
   /// What the answers of seen frames may take.
-  static constexpr std::size_t kSeenBytes = std::size_t{512} << 20;
+  static constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
 
   /// `make_host`: where algorithms run.
   explicit RunThread(ExecutorFactory make_host);
@@ -101,9 +97,9 @@ class RunThread {
   RunThread(const RunThread&) = delete;
   RunThread& operator=(const RunThread&) = delete;
 
-  void wish(ViewRequest wish);
+  void request(ViewRequest request);
   /// Calls `at` with the progress, which does not change meanwhile.
-  void look(const std::function<void(const RunProgress&)>& at);
+  void readProgress(const std::function<void(const RunProgress&)>& at);
   /// Whether everything requested has been done (or has failed).
   [[nodiscard]] bool isIdle();
   /// Waits until isIdle(); returns false after `patience`.
@@ -115,36 +111,36 @@ class RunThread {
   void loop();
   void takeRequest();
   bool step();
-  void openFootage();
-  bool reconcileLanes();
+  void openSource();
+  bool updateTracks();
   bool advance();
-  bool advanceLane(AlgorithmTrack& lane, const Frame& frame);
+  bool advanceTrack(AlgorithmTrack& track, const Frame& frame);
   bool advanceSecond();
   Frame frameAt(std::uint32_t index);
   void notePopulation(std::uint32_t index, std::span<const Aabb> boxes);
   void show();
-  void tell(std::string doing, float fraction);
-  void report(const AlgorithmTrack& lane);
+  void setActivity(std::string doing, float fraction);
+  void report(const AlgorithmTrack& track);
   void fail(std::string reason);
-  /// Whether to give up what a lane of this spec is at.
-  [[nodiscard]] bool isUnwanted(const LaneSpec& spec);
-  /// Likewise what the second view's instance of it is at.
-  [[nodiscard]] bool isUnwantedBeside(const LaneSpec& spec);
+  /// Whether the work of a track with this spec is to be cancelled.
+  [[nodiscard]] bool isUnwanted(const TrackSpec& spec);
+  /// Whether the work of the second view's instance is to be cancelled.
+  [[nodiscard]] bool isUnwantedInSecond(const TrackSpec& spec);
   [[nodiscard]] std::uint32_t target() const;
-  /// The lane of this number, or null.
-  [[nodiscard]] AlgorithmTrack* laneOf(int number) const;
-  [[nodiscard]] AlgorithmTrack* shownLane() const;
+  /// The track of this number, or null.
+  [[nodiscard]] AlgorithmTrack* trackOf(int number) const;
+  [[nodiscard]] AlgorithmTrack* shownTrack() const;
   /// Of the second view; null: it could not be opened.
-  [[nodiscard]] FrameProvider* footageBeside() const;
-  [[nodiscard]] std::uint32_t targetBeside() const;
-  /// The lane that has the second view's answer, or is to have it; null: the oracle.
-  AlgorithmTrack* laneBeside();
-  /// Null when the lane was lost on the way.
-  std::shared_ptr<const Snapshot> takeBeside();
-  /// Whether the answer of the shown lane, or the oracle's, is kept for a frame.
-  [[nodiscard]] bool hasSeen(std::uint32_t frame) const;
-  /// Whether nothing is wanted of a lane at the target but what is kept.
-  [[nodiscard]] bool isCached(const AlgorithmTrack& lane) const;
+  [[nodiscard]] FrameProvider* secondProvider() const;
+  [[nodiscard]] std::uint32_t secondTarget() const;
+  /// The track that has the second view's answer, or is to have it; null: the oracle.
+  AlgorithmTrack* secondTrack();
+  /// Null when the track was lost on the way.
+  std::shared_ptr<const Snapshot> takeSecondSnapshot();
+  /// Whether the answer of the shown track, or the oracle's, is kept for a frame.
+  [[nodiscard]] bool isAnswerCached(std::uint32_t frame) const;
+  /// Whether nothing is wanted of a track at the target but what is kept.
+  [[nodiscard]] bool isCached(const AlgorithmTrack& track) const;
   bool showCached();
 
   const ExecutorFactory make_host_;
@@ -153,27 +149,27 @@ class RunThread {
   // Used by the thread alone.
   ViewRequest current_;
   std::shared_ptr<const FrameProviderRequest> opened_;
-  std::unique_ptr<FrameProvider> footage_;
-  std::vector<std::unique_ptr<AlgorithmTrack>> lanes_;
+  std::unique_ptr<FrameProvider> provider_;
+  std::vector<std::unique_ptr<AlgorithmTrack>> tracks_;
   Oracle oracle_{std::size_t{256} << 20};
-  AnswerCache seen_{kSeenBytes};
+  AnswerCache cache_{kCacheBytes};
   std::optional<RunProgress::Stop> stop_;
   struct {
     std::shared_ptr<const FrameProviderRequest> opened = {};  ///< null: that of the first view
-    std::unique_ptr<FrameProvider> footage = {};              ///< of `opened`
+    std::unique_ptr<FrameProvider> provider = {};             ///< of `opened`
     std::string failure = {};                                 ///< why there is none
-    std::unique_ptr<AlgorithmTrack> lane = {};  ///< the instance of its own, if one is needed
-  } beside_;                                    ///< what the second view has of its own
-  Oracle oracle_beside_{std::size_t{256} << 20};
+    std::unique_ptr<AlgorithmTrack> track = {};  ///< the instance of its own, if one is needed
+  } second_;                                     ///< what the second view has of its own
+  Oracle second_oracle_{std::size_t{256} << 20};
   bool shown_ = false;        ///< whether the snapshots are what current_ wants
-  bool looked_back_ = false;  ///< since that wish came: see showCached()
+  bool looked_back_ = false;  ///< since that request came: see showCached()
 
   // Guarded by mutex_.
   std::mutex mutex_;
   std::condition_variable changed_;
-  ViewRequest wished_;
-  std::uint64_t wishes_ = 0;
-  std::uint64_t taken_ = 0;  ///< of the wishes
+  ViewRequest requested_;
+  std::uint64_t requests_ = 0;
+  std::uint64_t taken_ = 0;  ///< of the requests
   bool idle_ = false;
   bool stopping_ = false;
   RunProgress progress_;

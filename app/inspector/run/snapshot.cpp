@@ -7,40 +7,40 @@
 namespace broadmark {
 namespace {
 
-/// How many frames of a tracked body are looked back at.
+/// How many frames of a trail_bodies body are looked back at.
 constexpr std::uint32_t kTrackFrames = 60;
 
-std::vector<Track> tracksOf(const SnapshotWish& wish) {
-  std::vector<Track> tracks;
-  const std::uint32_t first = wish.frame - std::min(wish.frame, kTrackFrames - 1);
-  for (const std::uint32_t body : wish.tracked) {
-    if (body < wish.footage.scene().objects) tracks.push_back({.body = body, .first = first});
+std::vector<Trail> trailsOf(const SnapshotRequest& request) {
+  std::vector<Trail> trails;
+  const std::uint32_t first = request.frame - std::min(request.frame, kTrackFrames - 1);
+  for (const std::uint32_t body : request.trail_bodies) {
+    if (body < request.provider.scene().objects) trails.push_back({.body = body, .first = first});
   }
-  if (tracks.empty()) return tracks;
-  for (std::uint32_t index = first; index <= wish.frame; ++index) {
-    const Frame past = wish.footage.at(index);
-    for (Track& track : tracks) track.boxes.push_back(past.boxes[track.body]);
+  if (trails.empty()) return trails;
+  for (std::uint32_t index = first; index <= request.frame; ++index) {
+    const Frame past = request.provider.at(index);
+    for (Trail& trail : trails) trail.boxes.push_back(past.boxes[trail.body]);
   }
-  return tracks;
+  return trails;
 }
 
-std::shared_ptr<const std::vector<Aabb>> boxesOf(FrameProvider& footage, std::uint32_t index) {
-  const Frame frame = footage.at(index);
+std::shared_ptr<const std::vector<Aabb>> boxesOf(FrameProvider& provider, std::uint32_t index) {
+  const Frame frame = provider.at(index);
   return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
 }
 
-SeenAnswer oraclesAnswer(const SnapshotWish& wish, const Frame& frame, Oracle& oracle) {
-  if (wish.seen != nullptr) {
-    if (auto seen = wish.seen->recall(0, frame.index)) return std::move(*seen);
+CachedAnswer oraclesAnswer(const SnapshotRequest& request, const Frame& frame, Oracle& oracle) {
+  if (request.seen != nullptr) {
+    if (auto seen = request.seen->recall(0, frame.index)) return std::move(*seen);
   }
-  const std::span<const Pair> pairs = oracle.pairs(frame.boxes, wish.footage.scene().filter);
-  SeenAnswer answer{.pairs = {pairs.begin(), pairs.end()}, .judged = true};
-  if (wish.seen != nullptr) wish.seen->remember(0, frame.index, answer);
+  const std::span<const Pair> pairs = oracle.pairs(frame.boxes, request.provider.scene().filter);
+  CachedAnswer answer{.pairs = {pairs.begin(), pairs.end()}, .judged = true};
+  if (request.seen != nullptr) request.seen->remember(0, frame.index, answer);
   return answer;
 }
 
 /// What follows from an answer; the boxes are there already.
-void takeAnswer(SeenAnswer answer, bool check, Snapshot& snapshot) {
+void takeAnswer(CachedAnswer answer, bool check, Snapshot& snapshot) {
   const auto overlaps_in = [&](const PairRun& found) {
     return overlapCounts(snapshot.boxes->size(), {&found, 1});
   };
@@ -81,14 +81,14 @@ std::uint32_t presentIn(std::span<const Aabb> boxes) {
          static_cast<std::uint32_t>(std::ranges::count_if(boxes, isEmpty));
 }
 
-SeenAnswer answerOf(AlgorithmTrack& lane, const Frame& frame, bool judged,
-                    std::optional<FrameDifference> difference, const CollisionFilter& filter,
-                    Oracle& oracle) {
-  SeenAnswer answer{.pairs = lane.answer(),
-                    .judged = judged,
-                    .difference = std::move(difference),
-                    .right = {},
-                    .counters = lane.report().counters};
+CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool judged,
+                      std::optional<FrameDifference> difference, const CollisionFilter& filter,
+                      Oracle& oracle) {
+  CachedAnswer answer{.pairs = track.answer(),
+                      .judged = judged,
+                      .difference = std::move(difference),
+                      .right = {},
+                      .counters = track.report().counters};
   if (answer.difference && !answer.agrees()) {
     const std::span<const Pair> right = oracle.pairs(frame.boxes, filter);
     answer.right.assign(right.begin(), right.end());
@@ -96,38 +96,38 @@ SeenAnswer answerOf(AlgorithmTrack& lane, const Frame& frame, bool judged,
   return answer;
 }
 
-std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& oracle) {
+std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotRequest& request, Oracle& oracle) {
   auto snapshot = std::make_shared<Snapshot>();
-  snapshot->footage = wish.request;
-  snapshot->scene = wish.footage.scene();
-  snapshot->frame = wish.frame;
-  snapshot->tracks = tracksOf(wish);
-  if (wish.frame > 0) snapshot->boxes_before = boxesOf(wish.footage, wish.frame - 1);
-  snapshot->boxes = boxesOf(wish.footage, wish.frame);
+  snapshot->source = request.source;
+  snapshot->scene = request.provider.scene();
+  snapshot->frame = request.frame;
+  snapshot->trails = trailsOf(request);
+  if (request.frame > 0) snapshot->boxes_before = boxesOf(request.provider, request.frame - 1);
+  snapshot->boxes = boxesOf(request.provider, request.frame);
   snapshot->present = presentIn(*snapshot->boxes);
-  const Frame frame{wish.frame, *snapshot->boxes};
-  AlgorithmTrack* const lane = wish.lane;
-  const int number = lane != nullptr ? lane->spec().number : 0;
-  SeenAnswer answer;
-  if (lane != nullptr && lane->standsAt(wish.frame)) {
+  const Frame frame{request.frame, *snapshot->boxes};
+  AlgorithmTrack* const track = request.track;
+  const int number = track != nullptr ? track->spec().number : 0;
+  CachedAnswer answer;
+  if (track != nullptr && track->standsAt(request.frame)) {
     std::optional<FrameDifference> difference;
-    if (wish.check) difference = lane->check(frame, oracle);
-    answer =
-        answerOf(*lane, frame, wish.check, std::move(difference), snapshot->scene.filter, oracle);
-    if (wish.structure && lane->standsAt(wish.frame)) {
-      snapshot->structure = std::make_shared<RecordedDrawing>(lane->structure());
+    if (request.check) difference = track->check(frame, oracle);
+    answer = answerOf(*track, frame, request.check, std::move(difference), snapshot->scene.filter,
+                      oracle);
+    if (request.structure && track->standsAt(request.frame)) {
+      snapshot->structure = std::make_shared<RecordedDrawing>(track->structure());
     }
-    if (!lane->standsAt(wish.frame)) return nullptr;
-    snapshot->lane = number;
-    if (wish.seen != nullptr) wish.seen->remember(number, wish.frame, answer);
-  } else if (lane != nullptr && wish.seen != nullptr &&
-             wish.seen->holds(number, wish.frame, wish.check)) {
-    snapshot->lane = number;
-    answer = *wish.seen->recall(number, wish.frame);
+    if (!track->standsAt(request.frame)) return nullptr;
+    snapshot->track = number;
+    if (request.seen != nullptr) request.seen->remember(number, request.frame, answer);
+  } else if (track != nullptr && request.seen != nullptr &&
+             request.seen->holds(number, request.frame, request.check)) {
+    snapshot->track = number;
+    answer = *request.seen->recall(number, request.frame);
   } else {
-    answer = oraclesAnswer(wish, frame, oracle);
+    answer = oraclesAnswer(request, frame, oracle);
   }
-  takeAnswer(std::move(answer), wish.check, *snapshot);
+  takeAnswer(std::move(answer), request.check, *snapshot);
   return snapshot;
 }
 

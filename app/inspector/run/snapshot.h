@@ -1,4 +1,4 @@
-// Everything to be seen of one frame, and how it is taken.
+// The visible state of a frame, and how it is captured.
 #pragma once
 
 #include <cstdint>
@@ -20,18 +20,17 @@
 namespace broadmark {
 
 /// Where what is looked at comes from.
-enum class FootageSource { simulation, recording, import, authored, results };
-inline constexpr NameTable kFootageSources{
-    {NamedValue{FootageSource::simulation, "live simulation"},
-     {FootageSource::recording, "recording"},
-     {FootageSource::import, "imported files"},
-     {FootageSource::authored, "authored scene"},
-     {FootageSource::results, "case of results"}}};
+enum class FrameOrigin { simulation, recording, import, authored, results };
+inline constexpr NameTable kFrameOrigins{{NamedValue{FrameOrigin::simulation, "live simulation"},
+                                          {FrameOrigin::recording, "recording"},
+                                          {FrameOrigin::import, "imported files"},
+                                          {FrameOrigin::authored, "authored scene"},
+                                          {FrameOrigin::results, "case of results"}}};
 
 /// What to look at. Compared by address: the same one is opened once.
 struct FrameProviderRequest {
-  FootageOpener open;  ///< called on the run thread
-  FootageSource source = FootageSource::simulation;
+  FrameProviderOpener open;  ///< called on the run thread
+  FrameOrigin origin = FrameOrigin::simulation;
   std::string title;
   /// Requests of the same number, unless 0, show the same scene, perhaps changed: the camera stays
   /// where it is.
@@ -41,56 +40,56 @@ struct FrameProviderRequest {
 };
 
 /// A body's boxes up to the shown frame.
-struct Track {
+struct Trail {
   std::uint32_t body = 0;
   std::uint32_t first = 0;  ///< the frame of the first box
   std::vector<Aabb> boxes;
 };
 
-/// Everything to be seen of one frame. Immutable.
+/// The visible state of a frame. Immutable.
 struct Snapshot {
-  std::shared_ptr<const FrameProviderRequest> footage;
+  std::shared_ptr<const FrameProviderRequest> source;
   SceneInfo scene;
   std::uint32_t frame = 0;
   std::shared_ptr<const std::vector<Aabb>> boxes;
   std::uint32_t present = 0;                              ///< bodies that are there
   std::shared_ptr<const std::vector<Aabb>> boxes_before;  ///< null for frame 0
-  int lane = 0;                                           ///< whose answer this is; 0: the oracle's
-  std::vector<Pair> pairs;                                ///< the answer
+  int track = 0;                        ///< number of the answer's track; 0: the oracle's
+  std::vector<Pair> pairs;              ///< the answer
   std::vector<std::uint32_t> overlaps;  ///< per body, in how many pairs of the answer it is
   bool checked = false;
   std::uint64_t right_pairs = 0;              ///< that the oracle finds, if checked
-  std::vector<std::uint32_t> right_overlaps;  ///< likewise: as `overlaps`, of the oracle's pairs
+  std::vector<std::uint32_t> right_overlaps;  ///< as `overlaps`, of the oracle's pairs, if checked
   FrameDifference difference;                 ///< from the right answer, if checked
-  Counts counters;                            ///< of the lane's work
+  Counts counters;                            ///< of the track's work
   std::shared_ptr<const RecordedDrawing> structure;  ///< null: not asked for
-  std::vector<Track> tracks;
+  std::vector<Trail> trails;
 };
 
 /// What a snapshot is to show; borrowed.
-struct SnapshotWish {
-  const std::shared_ptr<const FrameProviderRequest>& request;
-  FrameProvider& footage;
-  std::uint32_t frame = 0;  ///< that the footage knows
-  AlgorithmTrack* lane =
-      nullptr;  ///< whose answer; null, or neither at this frame nor kept: the oracle's
-  AnswerCache* seen = nullptr;  ///< answers that are kept, and where this one is kept; null: none
+struct SnapshotRequest {
+  const std::shared_ptr<const FrameProviderRequest>& source;
+  FrameProvider& provider;
+  std::uint32_t frame = 0;  ///< that the source knows
+  AlgorithmTrack* track =
+      nullptr;  ///< source of the answer; null, or neither at this frame nor cached: the oracle
+  AnswerCache* seen = nullptr;  ///< reads cached answers and stores this one; null: no cache
   bool check = true;
   bool structure = false;
-  std::span<const std::uint32_t> tracked;  ///< bodies whose last frames are wanted
+  std::span<const std::uint32_t> trail_bodies;  ///< bodies to show over the last frames
 };
-/// Null when the lane was lost on the way.
-std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& oracle);
+/// Null when the track was lost on the way.
+std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotRequest& request, Oracle& oracle);
 
-/// The answer of a lane that stands at this frame, with the difference from the right one, if it
+/// The answer of a track that stands at this frame, with the difference from the right one, if it
 /// was compared (`judged`) and can be.
-SeenAnswer answerOf(AlgorithmTrack& lane, const Frame& frame, bool judged,
-                    std::optional<FrameDifference> difference, const CollisionFilter& filter,
-                    Oracle& oracle);
+CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool judged,
+                      std::optional<FrameDifference> difference, const CollisionFilter& filter,
+                      Oracle& oracle);
 
 struct PairComparison {
   std::vector<Pair> first_only;   ///< ascending
-  std::vector<Pair> second_only;  ///< likewise
+  std::vector<Pair> second_only;  ///< ascending
   std::uint64_t both = 0;
 };
 

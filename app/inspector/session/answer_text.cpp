@@ -11,12 +11,12 @@
 namespace broadmark {
 namespace {
 
-/// Its id, with the parameters where another lane has the same.
-std::string ownerName(const std::vector<LaneReport>& lanes, const LaneReport& lane) {
-  const std::string& id = lane.spec.run.algorithm.id;
+/// Its id, with the parameters where another track has the same.
+std::string ownerName(const std::vector<TrackReport>& tracks, const TrackReport& track) {
+  const std::string& id = track.spec.test_case.algorithm.id;
   const auto alike = std::ranges::count_if(
-      lanes, [&](const LaneReport& other) { return other.spec.run.algorithm.id == id; });
-  return alike > 1 ? caseName(lane.spec.run) : id;
+      tracks, [&](const TrackReport& other) { return other.spec.test_case.algorithm.id == id; });
+  return alike > 1 ? caseName(track.spec.test_case) : id;
 }
 
 std::string differenceText(const FrameDifference& difference) {
@@ -59,21 +59,21 @@ std::string pairText(const Snapshot& snapshot, const std::string& owner,
 
 }  // namespace
 
-AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& lanes, int chosen,
+AnswerText answerText(const Snapshot& snapshot, const std::vector<TrackReport>& tracks, int chosen,
                       std::span<const std::uint32_t> selection) {
   AnswerText text;
   const std::string pairs = counted(snapshot.pairs.size(), "pair");
-  if (const LaneReport* lane = laneOf(lanes, snapshot.lane)) {
-    text.owner = ownerName(lanes, *lane);
+  if (const TrackReport* track = trackOf(tracks, snapshot.track)) {
+    text.owner = ownerName(tracks, *track);
     text.answer = fmt::format("{} reports {}", text.owner, pairs);
     compareWithOracle(snapshot, text);
   } else {
     text.answer = fmt::format("the oracle finds {}", pairs);
-    const LaneReport* silent = laneOf(lanes, chosen);
+    const TrackReport* silent = trackOf(tracks, chosen);
     if (silent != nullptr) {
       text.beside =
-          fmt::format("{} has no answer for frame {}", ownerName(lanes, *silent), snapshot.frame);
-    } else if (!lanes.empty()) {
+          fmt::format("{} has no answer for frame {}", ownerName(tracks, *silent), snapshot.frame);
+    } else if (!tracks.empty()) {
       text.beside = "no algorithm's answer is shown";
     }
   }
@@ -81,9 +81,9 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& l
   return text;
 }
 
-std::string sourceText(const FrameProviderRequest* footage) {
-  if (footage == nullptr) return "";
-  return fmt::format("{}: {}", kFootageSources.nameOf(footage->source), footage->title);
+std::string sourceText(const FrameProviderRequest* source) {
+  if (source == nullptr) return "";
+  return fmt::format("{}: {}", kFrameOrigins.nameOf(source->origin), source->title);
 }
 
 }  // namespace broadmark

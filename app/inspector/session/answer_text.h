@@ -1,4 +1,4 @@
-// What a view shows, in words: whose answer it is, and what the oracle finds beside it.
+// Labels of a view: the source of its answer, and the oracle's count beside it.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct AnswerText {
   std::string owner;   ///< "faulty"
   std::string answer;  ///< "faulty reports 352 pairs"
   std::string beside;  ///< "the oracle finds 353: 1 missed"
-  std::string pair;    ///< of two selected bodies: who finds them; "" of any other number
+  std::string pair;  ///< which algorithms find the two selected bodies; "" unless two are selected
 };
 
-/// `chosen`: the number of the lane that is to be shown; it may have no answer for this frame.
-AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& lanes, int chosen,
+/// `chosen`: the number of the track that is to be shown; it may have no answer for this frame.
+AnswerText answerText(const Snapshot& snapshot, const std::vector<TrackReport>& tracks, int chosen,
                       std::span<const std::uint32_t> selection);
 
 /// "live simulation: Brownian"; "" for nothing.
-std::string sourceText(const FrameProviderRequest* footage);
+std::string sourceText(const FrameProviderRequest* source);
 
 }  // namespace broadmark

@@ -63,7 +63,7 @@ class BodySelection {
     flyThere();
   }
   void flyThere() { fly_to = bodies(); }
-  /// To be called when other footage is shown.
+  /// To be called when other source is shown.
   void reset() { bodies_.clear(); }
 
   /// What the view is to fly to, until it takes it; an empty list means everything.
@@ -72,7 +72,7 @@ class BodySelection {
  private:
   const Playback& playback_;
   Document& document_;
-  Bodies bodies_;  ///< of footage that is not the document
+  Bodies bodies_;  ///< of source that is not the document
 };
 
 }  // namespace broadmark

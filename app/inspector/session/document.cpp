@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scene where its bodies start, as footage of a single frame.
-FootageOpener stillOf(const scenes::AuthoredScene& scene) {
+/// The scene where its bodies start, as source of a single frame.
+FrameProviderOpener stillOf(const scenes::AuthoredScene& scene) {
   const SceneInfo info{.name = scene.name,
                        .object_type = scenes::objectTypeName(scene),
                        .objects = static_cast<std::uint32_t>(scene.bodies.size()),
@@ -41,27 +41,27 @@ void Document::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
 }
 
 void Document::startFromFrame() {
-  if (!playback_.footage() || atRest()) return;
-  // What is looked at is opened anew and goes on to that frame: then its bodies are known wholly.
-  FrameToTake wanted{.former = playback_.footage(),
+  if (!playback_.source() || atRest()) return;
+  // The shown source is reopened and advanced to that frame, where all of its bodies are known.
+  FrameToTake wanted{.former = playback_.source(),
                      .frame = playback_.frame(),
                      .shown = {},
                      .scene = std::make_shared<scenes::AuthoredScene>()};
   playback_.show({.open =
                       [former = wanted.former, frame = wanted.frame, scene = wanted.scene] {
-                        const std::unique_ptr<FrameProvider> footage = former->open();
-                        while (footage->known() < frame) footage->extend();
-                        *scene = footage->authoredScene(frame);
+                        const std::unique_ptr<FrameProvider> provider = former->open();
+                        while (provider->known() < frame) provider->extend();
+                        *scene = provider->authoredScene(frame);
                         return stillOf(*scene)();
                       },
-                  .source = FootageSource::authored,
+                  .origin = FrameOrigin::authored,
                   .title = fmt::format("frame {} of {}", wanted.frame, wanted.former->title)});
-  wanted.shown = playback_.footage();
+  wanted.shown = playback_.source();
   to_take_ = std::move(wanted);
 }
 
 void Document::advance(const RunProgress& progress) {
-  if (!to_take_ || to_take_->shown != progress.footage) return;
+  if (!to_take_ || to_take_->shown != progress.source) return;
   const FrameToTake wanted = *std::exchange(to_take_, {});
   if (progress.failure.empty()) {
     start(std::move(*wanted.scene), {}, true);
@@ -90,21 +90,21 @@ void Document::add(const std::function<scenes::Stroke()>& painted) {
     notices_.say(fmt::format("{} added", counted(*added, "body", "bodies")));
   } else if (added) {
     notices_.say(fmt::format("no room for {}", counted(left_out, "body", "bodies")),
-                 Message::Kind::warning);
+                 Severity::warning);
   }
 }
 
-void Document::showAs(FootageOpener open, bool moves) {
-  // Another world is looked at from anew.
+void Document::showAs(FrameProviderOpener open, bool moves) {
+  // A different world gets a new camera.
   const Aabb& world = editor.scene().world;
   if (scene_ == 0 || world != world_) scene_ = ++last_scene_;
   world_ = world;
   playback_.pause();
   playback_.show({.open = std::move(open),
-                  .source = FootageSource::authored,
+                  .origin = FrameOrigin::authored,
                   .title = title() + (moves ? ", simulated" : ", at its start"),
                   .scene = scene_});
-  footage_ = playback_.footage();
+  source_ = playback_.source();
   moves_ = moves;
 }
 

@@ -73,8 +73,8 @@ class Document {
   }
 
   /// Whether it is what is played.
-  [[nodiscard]] bool shown() const { return footage_ && footage_ == playback_.footage(); }
-  /// Likewise, where its bodies start.
+  [[nodiscard]] bool shown() const { return source_ && source_ == playback_.source(); }
+  /// Whether the document is shown with its bodies at their initial poses.
   [[nodiscard]] bool atRest() const { return shown() && !moves_; }
 
   /// Takes another scene, with no history, and shows it. `unsaved`: no file holds it as it is. Does
@@ -118,7 +118,7 @@ class Document {
     std::shared_ptr<scenes::AuthoredScene> scene;
   };
 
-  void showAs(FootageOpener open, bool moves);
+  void showAs(FrameProviderOpener open, bool moves);
 
   Playback& playback_;
   Notices& notices_;
@@ -127,7 +127,7 @@ class Document {
   bool unsaved_ = false;  ///< no file holds it as it was handed in
   std::size_t chosen_brush_ = 0;
   std::unique_ptr<scenes::Brush> brush_;
-  std::shared_ptr<const FrameProviderRequest> footage_;  ///< that shows the document last
+  std::shared_ptr<const FrameProviderRequest> source_;  ///< that shows the document last
   bool moves_ = false;
   std::uint64_t scene_ = 0;  ///< see FrameProviderRequest; 0: not shown yet
   std::uint64_t last_scene_ = 0;

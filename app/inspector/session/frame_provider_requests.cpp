@@ -29,19 +29,19 @@ std::string parametersOf(const Recording& recording, const fs::path& path) {
 
 }  // namespace
 
-FrameProviderRequest simulationFootage(Simulation& simulation, bool swept) {
+FrameProviderRequest simulationSource(Simulation& simulation, bool swept) {
   const std::string text = formatSceneParameters(simulation);
   return {.open =
               [text, swept] {
                 return std::make_unique<FrameProvider>(
                     parseSceneParameters(text, "scene parameters"), swept);
               },
-          .source = FootageSource::simulation,
+          .origin = FrameOrigin::simulation,
           .title = simulation.listing().name,
           .scene_parameters = text};
 }
 
-FrameProviderRequest recordingFootage(const fs::path& path, const std::string& hash, bool swept) {
+FrameProviderRequest recordingSource(const fs::path& path, const std::string& hash, bool swept) {
   // A bad one is an error at once, and changes nothing.
   const std::string parameters = parametersOf(*openRecordingFile(path), path);
   const auto open = [path, hash, swept] {
@@ -52,13 +52,13 @@ FrameProviderRequest recordingFootage(const fs::path& path, const std::string& h
     return std::make_unique<FrameProvider>(std::move(recording), swept);
   };
   return {.open = open,
-          .source = FootageSource::recording,
+          .origin = FrameOrigin::recording,
           .title = path.filename().string(),
           .recording = path,
           .scene_parameters = parameters};
 }
 
-FrameProviderRequest importFootage(const RecordingReference& reference, bool swept) {
+FrameProviderRequest importSource(const RecordingReference& reference, bool swept) {
   const auto open = [reference, swept]() -> std::unique_ptr<FrameProvider> {
     ReadingOptions reading;
     setParameters(reading, reference.reading);
@@ -68,13 +68,13 @@ FrameProviderRequest importFootage(const RecordingReference& reference, bool swe
     return std::make_unique<FrameProvider>(std::move(source.imported), swept);
   };
   return {.open = open,
-          .source = FootageSource::import,
+          .origin = FrameOrigin::import,
           .title = fs::path(reference.path).filename().string()};
 }
 
-ParameterValues sceneParametersOf(const FrameProviderRequest* footage) {
-  if (footage == nullptr || footage->scene_parameters.empty()) return {};
-  const auto simulation = parseSceneParameters(footage->scene_parameters, footage->title);
+ParameterValues sceneParametersOf(const FrameProviderRequest* source) {
+  if (source == nullptr || source->scene_parameters.empty()) return {};
+  const auto simulation = parseSceneParameters(source->scene_parameters, source->title);
   ParameterValues values = parameterValues(*simulation);
   values["scene"] = simulation->listing().id;
   return values;
@@ -93,8 +93,8 @@ void Draft::choose(const std::string& id) {
 }
 
 bool Draft::isOpen() const {
-  return playback_.footage() &&
-         playback_.footage()->scene_parameters == formatSceneParameters(*scene_);
+  return playback_.source() &&
+         playback_.source()->scene_parameters == formatSceneParameters(*scene_);
 }
 
 }  // namespace broadmark

@@ -17,15 +17,15 @@ namespace broadmark {
 // `swept`: shown as swept boxes.
 
 /// The simulation with its present parameters.
-FrameProviderRequest simulationFootage(Simulation& simulation, bool swept);
+FrameProviderRequest simulationSource(Simulation& simulation, bool swept);
 /// `hash`: the expected one; "": any. Throws InputError.
-FrameProviderRequest recordingFootage(const std::filesystem::path& path, const std::string& hash,
-                                      bool swept);
+FrameProviderRequest recordingSource(const std::filesystem::path& path, const std::string& hash,
+                                     bool swept);
 /// Throws InputError.
-FrameProviderRequest importFootage(const RecordingReference& reference, bool swept);
+FrameProviderRequest importSource(const RecordingReference& reference, bool swept);
 
 /// The parameters of the request's scene, "scene" among them, as far as they are known. Null: none.
-ParameterValues sceneParametersOf(const FrameProviderRequest* footage);
+ParameterValues sceneParametersOf(const FrameProviderRequest* source);
 
 /// The built-in scene that the user adjusts, and starts.
 class Draft {
@@ -39,7 +39,7 @@ class Draft {
   void take(std::unique_ptr<Simulation> scene) { scene_ = std::move(scene); }
 
   /// Shows a live simulation with the present parameters.
-  void simulate() { playback_.show(simulationFootage(*scene_, playback_.swept)); }
+  void simulate() { playback_.show(simulationSource(*scene_, playback_.swept)); }
   /// Whether what is open is its simulation, or was baked with its parameters.
   [[nodiscard]] bool isOpen() const;
 

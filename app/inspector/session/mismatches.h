@@ -11,21 +11,21 @@
 
 #include "inspector/run/run_thread.h"
 #include "inspector/session/body_selection.h"
-#include "inspector/session/lanes.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
+#include "inspector/session/track_list.h"
 #include "inspector/session/wrong_pair.h"
 
 namespace broadmark {
 
-/// The next frame after `frame` in which a lane is known to be wrong.
-inline std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<LaneReport>& lanes,
+/// The next frame after `frame` in which a track is known to be wrong.
+inline std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<TrackReport>& tracks,
                                                           std::uint32_t frame) {
   std::optional<RunProgress::Stop> next;
-  for (const LaneReport& lane : lanes) {
-    for (std::uint32_t index = frame + 1; index <= lane.frames.size(); ++index) {
-      if (!lane.frames[index - 1].mismatch) continue;
-      if (!next || index < next->frame) next = {.frame = index, .lane = lane.spec.number};
+  for (const TrackReport& track : tracks) {
+    for (std::uint32_t index = frame + 1; index <= track.frames.size(); ++index) {
+      if (!track.frames[index - 1].mismatch) continue;
+      if (!next || index < next->frame) next = {.frame = index, .track = track.spec.number};
       break;
     }
   }
@@ -35,8 +35,8 @@ inline std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<Lane
 class Mismatches {
  public:
   /// The parts it acts on outlive it.
-  Mismatches(Playback& playback, Lanes& lanes, BodySelection& selection, Notices& notices)
-      : playback_(playback), lanes_(lanes), selection_(selection), notices_(notices) {}
+  Mismatches(Playback& playback, TrackList& tracks, BodySelection& selection, Notices& notices)
+      : playback_(playback), tracks_(tracks), selection_(selection), notices_(notices) {}
 
   /// Takes note of a stop, and visits the first wrong pair once the frame is seen.
   void advance(const RunProgress& progress) {
@@ -52,9 +52,9 @@ class Mismatches {
   void goToNext(const RunProgress& progress) {
     playback_.pause();
     check = stop_at_mismatch = true;
-    if (const auto next = nextKnownMismatch(progress.lanes, playback_.frame())) {
+    if (const auto next = nextKnownMismatch(progress.tracks, playback_.frame())) {
       playback_.seek(next->frame);
-      lanes_.show(next->lane);
+      tracks_.show(next->track);
       return;
     }
     playback_.seek(playback_.lastFrame());
@@ -66,7 +66,7 @@ class Mismatches {
   /// Stays where the algorithms have got to.
   void endSearch(const RunProgress& progress) {
     std::uint32_t reached = progress.snapshot ? progress.snapshot->frame : 0;
-    for (const LaneReport& lane : progress.lanes) reached = std::max(reached, lane.frame);
+    for (const TrackReport& track : progress.tracks) reached = std::max(reached, track.frame);
     playback_.seek(std::min(reached, playback_.frame()));
   }
 
@@ -77,20 +77,20 @@ class Mismatches {
     searching_ = false;
   }
 
-  /// To be called when the lanes have changed: forgets at which frame it stopped.
+  /// To be called when the tracks have changed: forgets at which frame it stopped.
   void forgetStop() {
     known_.reset();
     noticed_.reset();
   }
 
-  /// To be called when other footage is shown: forgets everything.
+  /// To be called when other source is shown: forgets everything.
   void reset() {
     forgetStop();
     to_visit_.reset();
     searching_ = false;
   }
 
-  /// See Wish.
+  /// See ViewRequest.
   [[nodiscard]] std::optional<std::uint32_t> known() const { return known_; }
 
   bool check = true;             ///< compare every answer with the oracle's
@@ -106,18 +106,18 @@ class Mismatches {
     const bool is_known = known_ && *known_ >= frame;
     if (is_known || (noticed_ && noticed_->frame == frame)) return;
     playback_.goTo(frame);
-    lanes_.show(number);
+    tracks_.show(number);
     noticed_ = to_visit_ = progress.stop;
     notices_.bringUp("Mismatches");
-    const LaneEdit* wrong = lanes_.find(number);
+    const TrackEdit* wrong = tracks_.find(number);
     notices_.say(fmt::format("{} is wrong in frame {}",
-                             wrong ? wrong->run.algorithm.id : "an algorithm", frame),
-                 Message::Kind::error);
+                             wrong ? wrong->test_case.algorithm.id : "an algorithm", frame),
+                 Severity::error);
   }
 
   void visitStop(const Snapshot& seen) {
     if (!to_visit_ || !seen.checked || seen.frame != to_visit_->frame ||
-        seen.lane != to_visit_->lane) {
+        seen.track != to_visit_->track) {
       return;
     }
     to_visit_.reset();
@@ -126,7 +126,7 @@ class Mismatches {
   }
 
   Playback& playback_;
-  Lanes& lanes_;
+  TrackList& tracks_;
   BodySelection& selection_;
   Notices& notices_;
   std::optional<std::uint32_t> known_;

@@ -12,20 +12,21 @@
 
 namespace broadmark {
 
+enum class Severity { note, warning, error };
+
 /// A line for the status bar.
 struct Message {
-  enum class Kind { note, warning, error };
-  Kind kind = Kind::note;
+  Severity severity = Severity::note;
   std::string text;
 };
 
 struct Notices {
-  void say(std::string text, Message::Kind kind = Message::Kind::note) {
-    status = {kind, std::move(text)};
+  void say(std::string text, Severity severity = Severity::note) {
+    status = {severity, std::move(text)};
   }
   /// An error that the user has to acknowledge.
   void complain(std::string text) {
-    say(text, Message::Kind::error);
+    say(text, Severity::error);
     errors.push_back(std::move(text));
   }
   /// Does something, turning what it throws into an error. Returns whether all went well.

@@ -70,8 +70,8 @@ class OpenedResults {
   }
   /// Of the marked rows that have times, in the order of the file. Made when first asked for.
   const std::vector<Curve>& curves(Phase phase);
-  /// Of the listed rows, in the order of the file; likewise. Only complete cases whose answers were
-  /// right have points, and none has one where the phase took no time.
+  /// Curves of the listed rows, in the order of the file; valid until the list changes. Only
+  /// complete cases with right answers have points, and only where the phase took time.
   const std::vector<ScalingCurve>& scaling(Phase phase);
 
   /// The numbers of the rows to be shown, in order.
@@ -79,7 +79,7 @@ class OpenedResults {
   /// By the column with this key; "": as in the file. Cases without the value come last, either
   /// way.
   void sort(std::string_view column, bool descending);
-  /// Lists only cases whose id contains the text, and, if `only_wrong`, that gave a wrong answer.
+  /// Lists only cases with the text in their id and, if `only_wrong`, with a wrong answer.
   void filter(const std::string& text, bool only_wrong);
 
  private:
@@ -95,9 +95,9 @@ class OpenedResults {
   std::string text_;
   bool only_wrong_ = false;
   std::vector<Curve> curves_;
-  std::optional<Phase> curves_of_;  ///< nothing: they are to be made anew
+  std::optional<Phase> curves_of_;  ///< nothing: `curves_` are outdated
   std::vector<ScalingCurve> scaling_;
-  std::optional<Phase> scaling_of_;  ///< likewise
+  std::optional<Phase> scaling_of_;  ///< nothing: `scaling_` is outdated
 };
 
 }  // namespace broadmark

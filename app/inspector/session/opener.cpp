@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 void Session::open(const fs::path& path) {
   notices.attempt([&] {
-    OpenedSource opened = openSource(path.string(), {.algorithms = lanes.algorithms()});
+    OpenedSource opened = openSource(path.string(), {.algorithms = tracks.algorithms()});
     if (opened.results) {
       listCases(path, std::move(*opened.results));
     } else {
@@ -29,23 +29,23 @@ void Session::open(const fs::path& path) {
 void Session::openCase(const fs::path& file, const std::string& id) {
   notices.attempt([&] {
     OpenedSource opened =
-        openSource(file.string(), {.case_id = id, .algorithms = lanes.algorithms()});
+        openSource(file.string(), {.case_id = id, .algorithms = tracks.algorithms()});
     openEntry(std::move(opened.entries.at(0)), Opened::in_motion);
   });
 }
 
 void Session::openCase(OpenedResults::Row& row) {
   try {
-    openEntry(entryOf(row.result, results->file(), lanes.algorithms()), Opened::in_motion);
+    openEntry(entryOf(row.result, results->file(), tracks.algorithms()), Opened::in_motion);
     row.obstacle.clear();
   } catch (const InputError& error) {
     row.obstacle = error.what();
-    notices.say(row.obstacle, Message::Kind::error);
+    notices.say(row.obstacle, Severity::error);
   }
 }
 
 void Session::open(Plan plan) {
-  for (const Case& run : plan.cases) lanes.add(run);
+  for (const Case& test_case : plan.cases) tracks.add(test_case);
   if (auto& unchosen = plan.unchosen_case) {
     listCases(unchosen->file, std::move(unchosen->results));
     notices.on_file(unchosen->file);
@@ -66,8 +66,8 @@ void Session::openEntry(PlanEntry entry, Opened document_is) {
 void Session::enter(PlanEntry& entry, Opened document_is) {
   enterSource(entry, document_is);
   if (entry.cases.empty()) return;
-  lanes.clear();
-  for (const Case& run : entry.cases) lanes.add(run);
+  tracks.clear();
+  for (const Case& test_case : entry.cases) tracks.add(test_case);
   const std::optional<FrameDifference> difference = entry.knownDifference();
   if (!difference) return;
   playback.seek(difference->frame);
@@ -77,12 +77,12 @@ void Session::enter(PlanEntry& entry, Opened document_is) {
 
 void Session::enterSource(PlanEntry& entry, Opened document_is) {
   Source& source = entry.source;
-  const auto show = [&](FrameProviderRequest footage) {
+  const auto show = [&](FrameProviderRequest request) {
     if (entry.known) {
-      footage.source = FootageSource::results;
-      footage.title = entry.known->id;
+      request.origin = FrameOrigin::results;
+      request.title = entry.known->id;
     }
-    playback.show(std::move(footage));
+    playback.show(std::move(request));
   };
   playback.swept = source.reference.reading.contains("swept");
   if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
@@ -94,27 +94,27 @@ void Session::enterSource(PlanEntry& entry, Opened document_is) {
   } else if (source.simulation) {
     // A hash that is expected would be known only after the last frame.
     draft.take(std::move(source.simulation));
-    show(simulationFootage(draft.scene(), playback.swept));
+    show(simulationSource(draft.scene(), playback.swept));
   } else if (source.imported) {
-    show(importFootage(source.reference, playback.swept));
+    show(importSource(source.reference, playback.swept));
     notices.on_file(source.reference.path);
   } else if (!source.reference.path.empty()) {
-    show(recordingFootage(source.reference.path, source.expected_hash, playback.swept));
+    show(recordingSource(source.reference.path, source.expected_hash, playback.swept));
     notices.on_file(source.reference.path);
   }
 }
 
 void Session::listCases(const fs::path& file, Results listed) {
-  results.emplace(file, std::move(listed), lanes.algorithms());
+  results.emplace(file, std::move(listed), tracks.algorithms());
   notices.bringUp("Cases");
 }
 
 void Session::openExport(const ExportReport& report) {
   notices.attempt([&] {
     playback.swept = false;
-    playback.show(recordingFootage(report.file, {}, playback.swept));
-    lanes.clear();
-    lanes.add(report.run);
+    playback.show(recordingSource(report.file, {}, playback.swept));
+    tracks.clear();
+    tracks.add(report.test_case);
     playback.seek(static_cast<std::int64_t>(report.now.frames));
     notices.on_file(report.file);
   });

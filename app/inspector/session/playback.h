@@ -1,4 +1,4 @@
-// What is played: which footage, at which frame, and how it moves on.
+// What is played: which source, at which frame, and how it moves on.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace broadmark {
 
 class Playback {
  public:
-  /// Shows other footage, from frame 0 on.
-  void show(FrameProviderRequest footage) {
-    footage_ = std::make_shared<const FrameProviderRequest>(std::move(footage));
+  /// Shows other source, from frame 0 on.
+  void show(FrameProviderRequest source) {
+    source_ = std::make_shared<const FrameProviderRequest>(std::move(source));
     frame_ = 0;
     due_ = 0;
     scene_ = {};
@@ -28,8 +28,8 @@ class Playback {
   }
 
   /// Returns to what has been shown before.
-  void showAgain(std::shared_ptr<const FrameProviderRequest> footage, std::uint32_t frame) {
-    footage_ = std::move(footage);
+  void showAgain(std::shared_ptr<const FrameProviderRequest> source, std::uint32_t frame) {
+    source_ = std::move(source);
     frame_ = frame;
     scene_known_ = false;
   }
@@ -59,25 +59,25 @@ class Playback {
     seek(frame);
   }
 
-  /// Likewise, so many frames on; back if negative.
+  /// Goes on by this number of frames; back if negative.
   void step(int frames) { goTo(std::int64_t{frame_} + frames); }
 
-  /// Takes note of what is open. Returns whether that is the wished footage.
+  /// Takes note of what is open. Returns whether that is the requested source.
   bool follow(const RunProgress& progress) {
-    if (!footage_ || progress.footage != footage_) return false;
+    if (!source_ || progress.source != source_) return false;
     scene_ = progress.scene;
     scene_known_ = true;
     frame_ = std::min(frame_, scene_.frames);
     return true;
   }
 
-  /// Whether the wished frame is computed and shown.
+  /// Whether the requested frame is computed and shown.
   [[nodiscard]] bool hasReached(const RunProgress& progress) const {
-    return progress.doing.empty() && progress.snapshot && progress.snapshot->footage == footage_ &&
+    return progress.doing.empty() && progress.snapshot && progress.snapshot->source == source_ &&
            progress.snapshot->frame == frame_;
   }
 
-  /// While it plays: counts frames, and moves on by `seconds` once the wished frame is reached.
+  /// While it plays: counts frames, and moves on by `seconds` once the requested frame is reached.
   void advance(const RunProgress& progress, double seconds) {
     if (!playing_) {
       achieved_.reset();
@@ -106,13 +106,13 @@ class Playback {
   /// How many frames were shown per second of late; nothing while it does not play.
   [[nodiscard]] std::optional<double> achieved() const { return achieved_; }
 
-  /// The wished footage; null: none.
-  [[nodiscard]] const std::shared_ptr<const FrameProviderRequest>& footage() const {
-    return footage_;
+  /// The requested source; null: none.
+  [[nodiscard]] const std::shared_ptr<const FrameProviderRequest>& source() const {
+    return source_;
   }
-  /// The wished frame.
+  /// The requested frame.
   [[nodiscard]] std::uint32_t frame() const { return frame_; }
-  /// Of the footage, once it is open.
+  /// Of the source, once it is open.
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
   [[nodiscard]] std::uint32_t lastFrame() const { return scene_.frames; }
   [[nodiscard]] bool playing() const { return playing_; }
@@ -127,15 +127,15 @@ class Playback {
   std::function<void(bool forward)> on_move;
 
  private:
-  /// Over so many seconds the frames that are shown are counted.
+  /// Averaging window of the achieved frame rate.
   static constexpr double kCountedSeconds = 1;
   /// What cannot keep pace leaves out no more than this.
   static constexpr double kMaxFramesAtOnce = 4;
 
-  std::shared_ptr<const FrameProviderRequest> footage_;
+  std::shared_ptr<const FrameProviderRequest> source_;
   std::uint32_t frame_ = 0;
   SceneInfo scene_;
-  bool scene_known_ = false;  ///< the footage has been opened
+  bool scene_known_ = false;  ///< the source has been opened
   bool playing_ = false;
   double due_ = 0;  ///< of the next frame, as a share of its time
   std::optional<double> achieved_;

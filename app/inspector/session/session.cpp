@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// At most so many bodies are followed through the last frames.
-constexpr std::size_t kMaxTracked = 2;
+/// Maximum bodies shown over the last frames.
+constexpr std::size_t kMaxTrails = 2;
 
 }  // namespace
 
 Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_host)
-    : lanes(std::move(algorithms)), jobs(make_host), runs(std::move(make_host)) {
+    : tracks(std::move(algorithms)), jobs(make_host), runs(std::move(make_host)) {
   playback.on_show = [this] {
     selection.reset();
     mismatches.reset();
@@ -29,15 +29,15 @@ Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_host)
     notices.status = {};  // it told of what was open before
   };
   playback.on_move = [this](bool forward) { mismatches.moved(forward); };
-  lanes.on_change = [this] { mismatches.forgetStop(); };
+  tracks.on_change = [this] { mismatches.forgetStop(); };
 }
 
 void Session::advance(const RunProgress& progress, double seconds) {
   noticeJobs();
   known_frames_ = progress.known_frames;
-  frames_ = progress.footage == playback.footage() ? progress.frames : nullptr;
+  frames_ = progress.source == playback.source() ? progress.frames : nullptr;
   if (!playback.follow(progress)) return;
-  timeline.follow(playback.footage(), playback.lastFrame(), playback.frame());
+  timeline.follow(playback.source(), playback.lastFrame(), playback.frame());
   noticeFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
@@ -46,25 +46,25 @@ void Session::advance(const RunProgress& progress, double seconds) {
 
 bool Session::busy() { return playback.playing() || !runs.isIdle() || jobs.running(); }
 
-ViewRequest Session::wish() const {
-  ViewRequest wish{.footage = playback.footage(),
-                   .lanes = lanes.specs(),
-                   .frame = playback.frame(),
-                   .playing = playback.playing(),
-                   .check = mismatches.check,
-                   .stop_at_mismatch = mismatches.stop_at_mismatch,
-                   .known_mismatch = mismatches.known(),
-                   .shown_lane = lanes.shown(),
-                   .structure = view.structure || view.colourMode().of_tests,
-                   .tracked = selection.bodies(),
-                   .second = second};
-  if (wish.tracked.size() > kMaxTracked) wish.tracked.clear();
-  return wish;
+ViewRequest Session::request() const {
+  ViewRequest request{.source = playback.source(),
+                      .tracks = tracks.specs(),
+                      .frame = playback.frame(),
+                      .playing = playback.playing(),
+                      .check = mismatches.check,
+                      .stop_at_mismatch = mismatches.stop_at_mismatch,
+                      .known_mismatch = mismatches.known(),
+                      .shown_track = tracks.shown(),
+                      .structure = display.structure || display.colourMode().of_tests,
+                      .trail_bodies = selection.bodies(),
+                      .second = second};
+  if (request.trail_bodies.size() > kMaxTrails) request.trail_bodies.clear();
+  return request;
 }
 
 void Session::commit() {
-  if (ViewRequest now = wish(); now != committed_) {
-    runs.wish(now);
+  if (ViewRequest now = request(); now != committed_) {
+    runs.request(now);
     committed_ = std::move(now);
   }
 }
@@ -83,13 +83,13 @@ void Session::noticeJobs() {
     const JobStatus ended = job->status();
     if (!ended.failure.empty()) notices.complain(ended.failure);
     if (ended.outcome.empty()) continue;
-    notices.say(ended.outcome, ended.faulty ? Message::Kind::error : Message::Kind::note);
+    notices.say(ended.outcome, ended.faulty ? Severity::error : Severity::note);
   }
 }
 
 void Session::play(bool on) {
-  if (on && !playback.footage()) {
-    notices.say("nothing is open: simulate a scene, or open a file", Message::Kind::warning);
+  if (on && !playback.source()) {
+    notices.say("nothing is open: simulate a scene, or open a file", Severity::warning);
     return;
   }
   if (on && document.atRest()) document.simulate();
@@ -108,16 +108,17 @@ void Session::saveRecording(const fs::path& path) {
   });
 }
 
-void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot, fs::path file) {
+void Session::exportCase(const Case& test_case, std::shared_ptr<const Snapshot> snapshot,
+                         fs::path file) {
   const SceneInfo scene = playback.scene();
   if (!file.has_extension()) file += recordingExtension(scene);
   notices.attempt([&] {
-    requireExportable(file, snapshot->footage->recording, scene);
-    if (!frames_ || snapshot->footage != playback.footage()) {
+    requireExportable(file, snapshot->source->recording, scene);
+    if (!frames_ || snapshot->source != playback.source()) {
       throw InputError("exporting a case: another scene has been opened");
     }
-    startExport(jobs.get<CaseExport>(), run, frames_(snapshot->frame), snapshot->difference, file,
-                jobs.make_host);
+    startExport(jobs.get<CaseExport>(), test_case, frames_(snapshot->frame), snapshot->difference,
+                file, jobs.make_host);
   });
 }
 
@@ -125,7 +126,7 @@ void Session::startDuel(double max_seconds) {
   notices.attempt([&] {
     if (!frames_) throw InputError("duel: nothing is open");
     std::vector<Case> cases;
-    for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
+    for (const TrackSpec& track : tracks.specs()) cases.push_back(track.test_case);
     broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), max_seconds,
                          jobs.make_host);
   });
@@ -136,19 +137,19 @@ void Session::showSecond(bool on) {
   if (!on) return;
   second.emplace();
   const auto other = std::ranges::find_if(
-      lanes.list, [this](const LaneEdit& lane) { return lane.number != lanes.shown(); });
-  if (other != lanes.list.end()) second->lane = other->number;
+      tracks.list, [this](const TrackEdit& track) { return track.number != tracks.shown(); });
+  if (other != tracks.list.end()) second->track = other->number;
   // Without another algorithm's answer it is the same one's, and stays where it is.
-  if (other == lanes.list.end() && lanes.shown() == 0) second->frame = playback.frame();
+  if (other == tracks.list.end() && tracks.shown() == 0) second->frame = playback.frame();
 }
 
 void Session::showBeside(const fs::path& recording) {
   notices.attempt([&] {
-    FrameProviderRequest footage = recordingFootage(recording, {}, playback.swept);
-    second = SecondViewRequest{
-        .footage = std::make_shared<const FrameProviderRequest>(std::move(footage)),
-        .frame = {},
-        .lane = lanes.shown()};
+    FrameProviderRequest source = recordingSource(recording, {}, playback.swept);
+    second =
+        SecondViewRequest{.source = std::make_shared<const FrameProviderRequest>(std::move(source)),
+                          .frame = {},
+                          .track = tracks.shown()};
   });
 }
 

@@ -11,19 +11,19 @@
 #include "inspector/jobs/jobs.h"
 #include "inspector/run/run_thread.h"
 #include "inspector/session/body_selection.h"
+#include "inspector/session/display_options.h"
 #include "inspector/session/frame_provider_requests.h"
-#include "inspector/session/lanes.h"
 #include "inspector/session/mismatches.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/opened_results.h"
 #include "inspector/session/playback.h"
 #include "inspector/session/timeline.h"
-#include "inspector/session/view_options.h"
+#include "inspector/session/track_list.h"
 #include "run/plan.h"
 
 namespace broadmark {
 
-/// Owns the parts, hands their wishes to the run thread, and does what takes several of them.
+/// Owns the parts, hands their requests to the run thread, and does what takes several of them.
 class Session {
  public:
   /// Algorithms that can be chosen, and where they run.
@@ -33,7 +33,7 @@ class Session {
 
   /// Once per picture: takes note of the progress, and moves the playback on.
   void advance(const RunProgress& progress, double seconds);
-  /// Hands the wish to the run thread if it has changed. Not inside RunThread::look().
+  /// Hands the request to the run thread if it has changed. Not inside RunThread::readProgress().
   void commit();
   /// Whether anything goes on by itself.
   [[nodiscard]] bool busy();
@@ -44,17 +44,17 @@ class Session {
   void saveRecording(const std::filesystem::path& path);
   /// Begins to shrink and write the case that is wrong in this snapshot; `file` gets its extension
   /// if it has none.
-  void exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot,
+  void exportCase(const Case& test_case, std::shared_ptr<const Snapshot> snapshot,
                   std::filesystem::path file);
-  /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
+  /// Starts a duel of the tracks on the known frames, for at most this number of seconds.
   void startDuel(double max_seconds);
 
   // Opening: see opener.cpp.
   /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
-  /// file all cases are listed; of a file that names a case, that becomes the only lane.
+  /// file all cases are listed; of a file that names a case, that becomes the only track.
   void open(const std::filesystem::path& path);
-  /// Opens the first entry with its cases as lanes, or lists those of results; without either
-  /// there are only lanes. Throws InputError.
+  /// Opens the first entry with its cases as tracks, or lists those of results; without either
+  /// there are only tracks. Throws InputError.
   void open(Plan plan);
   /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
   /// error.
@@ -73,13 +73,13 @@ class Session {
   Notices notices;
   Playback playback;
   Timeline timeline;
-  Lanes lanes;
+  TrackList tracks;
   Jobs jobs;
   Document document{playback, notices, jobs.get<BackgroundBake>()};
   BodySelection selection{playback, document};
-  Mismatches mismatches{playback, lanes, selection, notices};
+  Mismatches mismatches{playback, tracks, selection, notices};
   Draft draft{playback};
-  ViewOptions view;
+  DisplayOptions display;
   std::optional<SecondViewRequest> second;  ///< nothing: there is no second view
   bool cameras_linked = true;               ///< one camera moves both views
   std::optional<OpenedResults> results;     ///< the latest; what is played may be of others
@@ -92,7 +92,7 @@ class Session {
   void enter(PlanEntry& entry, Opened document_is);
   void enterSource(PlanEntry& entry, Opened document_is);
   void listCases(const std::filesystem::path& file, Results listed);
-  [[nodiscard]] ViewRequest wish() const;
+  [[nodiscard]] ViewRequest request() const;
   void noticeFailure(const RunProgress& progress);
   void noticeJobs();
 

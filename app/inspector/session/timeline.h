@@ -20,14 +20,14 @@ struct FrameSpan {
   friend bool operator==(const FrameSpan&, const FrameSpan&) = default;
 };
 
-/// Zoom and span belong to the footage: other footage is shown as a whole.
+/// Zoom and span belong to the source: other source is shown as a whole.
 class Timeline {
  public:
   /// Takes note of what is played, and at which frame. A frame that was moved to is in sight from
   /// then on.
-  void follow(const std::shared_ptr<const FrameProviderRequest>& footage, std::uint32_t last_frame,
+  void follow(const std::shared_ptr<const FrameProviderRequest>& source, std::uint32_t last_frame,
               std::uint32_t frame) {
-    if (std::exchange(footage_, footage) != footage || last_frame_ != last_frame) {
+    if (std::exchange(source_, source) != source || last_frame_ != last_frame) {
       last_frame_ = last_frame;
       frame_ = frame;
       clearSpan();
@@ -44,14 +44,14 @@ class Timeline {
   [[nodiscard]] double last() const { return last_; }
   [[nodiscard]] bool zoomed() const { return last_ - first_ < whole(); }
 
-  /// Nearer by so many turns of a wheel (below 0: farther); what is at `at` stays where it is.
+  /// Zooms in by this number of wheel notches (negative: out); the frame at `at` stays in place.
   void zoom(double turns, double at) {
     const double extent = allowed((last_ - first_) * std::pow(kExtentPerTurn, turns));
     const double share = (at - first_) / (last_ - first_);
     show(at - share * extent, extent);
   }
 
-  /// Shows what lies so many frames later.
+  /// Scrolls by this number of frames.
   void move(double frames) { show(first_ + frames, last_ - first_); }
   void showAll() { show(0, whole()); }
   /// Shows just the span. There must be one.
@@ -62,8 +62,8 @@ class Timeline {
   }
 
   [[nodiscard]] const std::optional<FrameSpan>& span() const { return span_; }
-  /// From one end to the other, in any order, as far as these frames exist. Frame 0 is not timed:
-  /// it is never in a span.
+  /// Selects the existing frames between both ends, given in any order. Frame 0 is not timed and
+  /// never in a span.
   void select(double from, double to) {
     if (last_frame_ == 0) return;
     const auto frame = [&](double at) {
@@ -95,7 +95,7 @@ class Timeline {
     last_ = first_ + extent;
   }
 
-  std::shared_ptr<const FrameProviderRequest> footage_;
+  std::shared_ptr<const FrameProviderRequest> source_;
   std::uint32_t last_frame_ = 0;
   std::uint32_t frame_ = 0;
   double first_ = 0;

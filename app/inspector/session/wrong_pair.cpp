@@ -19,8 +19,8 @@ AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b) {
   const double gap = std::max(static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]),
                               static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]));
   AxisRelation relation{.gap = gap};
-  if (gap < 0) relation.kind = AxisRelation::Kind::overlap;
-  if (gap == 0) relation.kind = AxisRelation::Kind::touch;
+  if (gap < 0) relation.type = AxisRelation::Type::overlap;
+  if (gap == 0) relation.type = AxisRelation::Type::touch;
   return relation;
 }
 
@@ -32,13 +32,13 @@ std::size_t decidingAxis(const Aabb& a, const Aabb& b) {
   return widest;
 }
 
-std::string absenceText(const Track& track) {
+std::string absenceText(const Trail& trail) {
   std::size_t absent = 0;
-  while (absent < track.boxes.size() && isEmpty(track.boxes[track.boxes.size() - 1 - absent])) {
+  while (absent < trail.boxes.size() && isEmpty(trail.boxes[trail.boxes.size() - 1 - absent])) {
     ++absent;
   }
-  const std::size_t since = track.first + track.boxes.size() - absent;
-  if (absent < track.boxes.size()) return fmt::format("absent: vanished in frame {}", since);
+  const std::size_t since = trail.first + trail.boxes.size() - absent;
+  if (absent < trail.boxes.size()) return fmt::format("absent: vanished in frame {}", since);
   return since == 0 ? "absent since frame 0"
                     : fmt::format("absent since frame {} or earlier", since);
 }
@@ -58,7 +58,7 @@ std::string unwantedText(const CollisionFilter& filter, Pair pair) {
   return "not wanted: they share a tag";
 }
 
-std::optional<std::uint32_t> PairTrack::overlapBegan() const {
+std::optional<std::uint32_t> PairTrails::overlapBegan() const {
   std::size_t first = size();
   while (first > 0 && overlapsAt(first - 1)) --first;
   if (first == size()) return {};

@@ -47,32 +47,32 @@ std::vector<WrongPair> wrongPairs(const FrameDifference& difference);
 
 inline constexpr std::array kAxes = {"x", "y", "z"};
 
-/// How two boxes lie on one axis.
+/// The relation of two boxes on an axis.
 struct AxisRelation {
-  enum class Kind { overlap, touch, gap };
-  Kind kind = Kind::gap;
+  enum class Type { overlap, touch, gap };
+  Type type = Type::gap;
   /// The distance between the intervals; below 0: by how much they overlap.
   double gap = 0;
 };
-inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Kind::overlap, "overlap"},
-                                       {AxisRelation::Kind::touch, "touch"},
-                                       {AxisRelation::Kind::gap, "gap"}}};
+inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Type::overlap, "overlap"},
+                                       {AxisRelation::Type::touch, "touch"},
+                                       {AxisRelation::Type::gap, "gap"}}};
 AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b);
 /// The axis that decides whether they overlap: the one with the widest gap, or, if there is none,
 /// with the least overlap.
 std::size_t decidingAxis(const Aabb& a, const Aabb& b);
 
-/// Of a body that is absent at the end of its track: "absent: vanished in frame 41".
-std::string absenceText(const Track& track);
+/// Of a body that is absent at the end of its trail: "absent: vanished in frame 41".
+std::string absenceText(const Trail& trail);
 
 /// Why the overlap of two bodies would not count: "not wanted: layers 1 and 2 do not collide". ""
 /// if it would.
 std::string unwantedText(const CollisionFilter& filter, Pair pair);
 
-/// Two tracked bodies, side by side; both tracks span the same frames.
-struct PairTrack {
-  const Track& a;
-  const Track& b;
+/// Two trail_bodies bodies, side by side; both trails span the same frames.
+struct PairTrails {
+  const Trail& a;
+  const Trail& b;
 
   [[nodiscard]] std::size_t size() const { return std::min(a.boxes.size(), b.boxes.size()); }
   [[nodiscard]] bool overlapsAt(std::size_t i) const { return overlaps(a.boxes[i], b.boxes[i]); }
@@ -82,8 +82,8 @@ struct PairTrack {
 };
 
 /// Whether a body's box differs from that of the frame before.
-inline bool movedAt(const Track& track, std::size_t i) {
-  return i > 0 && track.boxes[i] != track.boxes[i - 1];
+inline bool movedAt(const Trail& trail, std::size_t i) {
+  return i > 0 && trail.boxes[i] != trail.boxes[i - 1];
 }
 
 }  // namespace broadmark

@@ -17,7 +17,7 @@ struct Preferences {
   int window_width = 1440;
   int window_height = 860;
   double left = 310;                        ///< width of the panels on the left, in units
-  double right = 310;                       ///< likewise on the right
+  double right = 310;                       ///< width of the panels on the right
   double bottom = 240;                      ///< height of those below
   std::map<std::string, std::string> tabs;  ///< the panel in front, by place
   std::vector<std::string> recent;          ///< files, the latest first

@@ -10,7 +10,7 @@
 namespace broadmark {
 namespace {
 
-/// What each of Dear ImGui's colours is.
+/// Dear ImGui's colours from ours.
 struct ColourUse {
   ImGuiCol_ which;
   Rgb Palette::*source;

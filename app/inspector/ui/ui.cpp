@@ -15,7 +15,7 @@ namespace {
 
 /// Inputs are as wide as this share of their panel; their labels take the rest.
 constexpr float kInputShare = 0.52F;
-constexpr float kVectorShare = 0.7F;    // likewise of three numbers in a row
+constexpr float kVectorShare = 0.7F;    // of the width, for three numbers in a row
 constexpr float kTooltipDelay = 0.45F;  // seconds
 constexpr std::size_t kBins = 48;       // of a histogram
 
@@ -113,7 +113,7 @@ std::string Ui::fullName(std::string_view label) const {
 }
 
 void Ui::note(std::string_view label) {
-  letters.need(label);
+  glyphs.request(label);
   const std::string name = fullName(label);
   if (name == revealed_) {
     ImGui::SetScrollHereY();
@@ -241,7 +241,7 @@ bool Ui::selectableLine(const char* label, bool selected, std::string_view right
 
 bool Ui::text(const char* label, std::string& value, const char* hint) {
   labelledWidth();
-  letters.need(value);
+  glyphs.request(value);
   ImGui::InputTextWithHint(label, hint, &value);
   note(label);
   return ImGui::IsItemDeactivatedAfterEdit();
@@ -470,7 +470,7 @@ void Ui::fact(const char* name, std::string_view value) {
 }
 
 void Ui::plain(std::string_view words) {
-  letters.need(words);
+  glyphs.request(words);
   ImGui::TextUnformatted(words.data(), words.data() + words.size());
 }
 

@@ -18,7 +18,7 @@
 
 #include "broadmark/parameters.h"
 #include "broadmark/render/palette.h"
-#include "inspector/ui/letters.h"
+#include "inspector/ui/glyph_atlas.h"
 
 namespace broadmark {
 
@@ -61,7 +61,7 @@ class Ui {
   [[nodiscard]] static bool inDialog();
   /// The widget that keys have moved to; "": none.
   [[nodiscard]] const std::string& focused() const { return focus_; }
-  /// Likewise Enter, which text being typed does not take.
+  /// Whether Enter was pressed outside a text input.
   [[nodiscard]] static bool entered();
 
   bool button(const char* label, const char* tooltip = nullptr, float width = 0,
@@ -102,7 +102,7 @@ class Ui {
   /// Puts the next window in the middle of the screen, of this size (in units; 0: what its contents
   /// need) or as large as the screen allows.
   void placeInMiddle(ImVec2 size) const;
-  /// A dialog, placed likewise, whose popup has been opened. Its cross makes `keep` false.
+  /// A dialog, placed like a window; its popup must be open. Its cross sets `keep` to false.
   /// Returns whether it is drawn: then ImGui::EndPopup() follows.
   bool beginDialog(const char* title, ImVec2 size, bool* keep = nullptr);
   /// A dialog that asks, with a button for each answer and its tooltip, and "Cancel". Returns the
@@ -153,7 +153,7 @@ class Ui {
   /// Called when a number that was entered is not taken as it is, with why.
   std::function<void(const std::string&)> on_correction;
 
-  Letters letters;  ///< of all texts that pass through here
+  GlyphAtlas glyphs;  ///< of all texts that pass through here
   Palette theme = kDarkPalette;
   float scale = 1;          ///< pixels per unit
   ImFont* large = nullptr;  ///< for what is to be seen first
@@ -166,7 +166,7 @@ class Ui {
   template <class Number>
   bool enterNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
                    const char* tooltip);
-  /// Width of an input whose label stands to its right.
+  /// Sets the width of an input with its label on the right.
   void labelledWidth() const;
 
   std::string scope_;

@@ -20,7 +20,7 @@ constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
 constexpr float kZoomPerTurn = 0.86F;
 constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
-constexpr float kSurroundings = 3;  // what is looked at is shown with so many times its size around
+constexpr float kSurroundings = 3;  // focused bodies are framed with this multiple of their size
 
 /// Whole groups, unless Alt is down.
 BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
@@ -78,9 +78,9 @@ void View::takeFlightRequest(Session& session) {
 }
 
 void View::placeCamera(const Snapshot& snapshot) {
-  const auto seen = std::exchange(footage_, snapshot.footage);
+  const auto seen = std::exchange(source_, snapshot.source);
   const bool new_scene =
-      !seen || (seen != footage_ && (seen->scene == 0 || seen->scene != footage_->scene));
+      !seen || (seen != source_ && (seen->scene == 0 || seen->scene != source_->scene));
   if (!new_scene) return;
   const Aabb all = shownBox(snapshot.scene.world, *snapshot.boxes);
   space_ = viewSpaceOf(all);
@@ -125,7 +125,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   if (!shown.snapshot) return drawEmpty(ui, shown.hint);
   if (content_.update(shown.snapshot, progress.comparison, session, ui.theme.dark)) {
     placeCamera(*shown.snapshot);
-    answer_ = answerText(*shown.snapshot, progress.lanes, shown.lane, content_.selection());
+    answer_ = answerText(*shown.snapshot, progress.tracks, shown.track, content_.selection());
   }
   if (shown.leader != nullptr) {
     follow(*shown.leader);
@@ -154,13 +154,13 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   handleMouse(ui, seen);
   if (shown.has_hands) hands_.draw(ui, seen, corner_);
   moved_ = camera_ != before;
-  const std::string source = sourceText(shown.snapshot->footage.get());
+  const std::string source = sourceText(shown.snapshot->source.get());
   answer_.where = session.second ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
   const ImVec2 taken = drawAnswer(ui, answer_, corner_, size_);
   const bool tools = shown.has_hands && session.document.shown();
   const float free = tools ? drawTools(ui, session, corner_, size_) : size_.y;
   drawLegend(ui, content_, answer_.owner, corner_, {size_.x, free}, taken);
-  if (session.view.axes) drawAxisNames(ui.scale);
+  if (session.display.axes) drawAxisNames(ui.scale);
 }
 
 void View::beginDrag(const ViewportManipulator::Seen& seen) {
@@ -275,14 +275,14 @@ void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 p
   std::vector<View::Shown> shown = {{.name = "View",
                                      .snapshot = progress.snapshot,
                                      .hint = "Simulate a scene, or drop a recording here",
-                                     .lane = session.lanes.shown(),
+                                     .track = session.tracks.shown(),
                                      .has_hands = true}};
   if (session.second) {
     const std::string& failure = progress.second_failure;
     shown.push_back({.name = "Second view",
                      .snapshot = progress.second,
                      .hint = failure.empty() ? "Nothing is shown yet" : failure,
-                     .lane = session.second->lane,
+                     .track = session.second->track,
                      .leader = session.cameras_linked ? &first() : nullptr});
   }
   const auto count = static_cast<float>(shown.size());

@@ -35,9 +35,9 @@ class View {
     const char* name = "";
     std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing…
     std::string hint;                          ///< …for this reason
-    int lane = 0;                              ///< whose answer, by number; 0: the oracle's
+    int track = 0;                             ///< number of the answer's track; 0: the oracle's
     bool has_hands = false;                    ///< the document's bodies can be moved in it
-    const View* leader = nullptr;              ///< whose camera it takes over; null: its own
+    const View* leader = nullptr;  ///< view to copy the camera from; null: its own camera
   };
   explicit View(const Gl& gl) : scene_(gl) {}
 
@@ -48,9 +48,9 @@ class View {
   /// Whether the user has moved the camera in the last picture.
   [[nodiscard]] bool moved() const { return moved_; }
   /// Whether it moves by itself.
-  [[nodiscard]] bool lively() const { return flight_.has_value(); }
+  [[nodiscard]] bool needsRedraw() const { return flight_.has_value(); }
   [[nodiscard]] const ViewContent& content() const { return content_; }
-  /// Whose answer is seen.
+  /// Labels of the shown answer.
   [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
   /// What the mouse does with bodies.
@@ -89,7 +89,7 @@ class View {
   OrbitCamera camera_;
   std::optional<Flight> flight_;
   bool moved_ = false;
-  std::shared_ptr<const FrameProviderRequest> footage_;  ///< the camera has been placed for
+  std::shared_ptr<const FrameProviderRequest> source_;  ///< the camera has been placed for
   AnswerText answer_;
   ViewportManipulator hands_;
   // In pixels, of the present picture.
@@ -108,8 +108,8 @@ class Views {
 
   /// Draws those that are wanted into a rectangle.
   void draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position, ImVec2 size);
-  /// Whether one moves by itself.
-  [[nodiscard]] bool lively() const { return std::ranges::any_of(list_, &View::lively); }
+  /// Whether a camera is in flight.
+  [[nodiscard]] bool needsRedraw() const { return std::ranges::any_of(list_, &View::needsRedraw); }
   /// Of what is played.
   [[nodiscard]] View& first() { return list_.front(); }
   [[nodiscard]] const std::array<View, 2>& list() const { return list_; }

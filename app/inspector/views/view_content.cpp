@@ -24,13 +24,13 @@ bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
   // What has just been added is selected already, but not to be seen yet.
   std::vector<std::uint32_t> selection = session.selection.bodies();
   std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
-  Shown shown{snapshot, comparison, std::move(selection), session.view, dark};
+  Shown shown{snapshot, comparison, std::move(selection), session.display, dark};
   if (shown == shown_) return false;
   shown_ = std::move(shown);
   picture.world = snapshot->scene.world;
-  picture.shows_world = session.view.world_box;
-  picture.shows_grid = session.view.ground;
-  picture.shows_axes = session.view.axes;
+  picture.shows_world = session.display.world_box;
+  picture.shows_grid = session.display.ground;
+  picture.shows_axes = session.display.axes;
   picture.theme = paletteOf(dark);
   ++revision_;
   updateBodies();
@@ -76,7 +76,7 @@ void ViewContent::updateBodies() {
 
 void ViewContent::updateVisible() {
   const Snapshot& snapshot = *shown_.snapshot;
-  const ViewOptions& options = shown_.options;
+  const DisplayOptions& options = shown_.options;
   visible_.clear();
   if (!options.hide_free && !options.filter.hides()) return;
   visible_.assign(snapshot.boxes->size(), 1);
@@ -115,10 +115,10 @@ void ViewContent::add(Overlay overlay) {
   if (!overlay.legend.empty()) cell_legend = std::move(overlay.legend);
 }
 
-void ViewContent::addTracks(std::span<const Track> tracks) {
-  for (const Track& track : tracks) {
-    for (std::size_t i = 1; i < track.boxes.size(); ++i) {
-      if (isEmpty(track.boxes[i - 1]) || isEmpty(track.boxes[i])) continue;
+void ViewContent::addTrails(std::span<const Trail> trails) {
+  for (const Trail& trail : trails) {
+    for (std::size_t i = 1; i < trail.boxes.size(); ++i) {
+      if (isEmpty(trail.boxes[i - 1]) || isEmpty(trail.boxes[i])) continue;
       const auto middle = [&](const Aabb& box) {
         std::array<float, 3> centre{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -126,8 +126,8 @@ void ViewContent::addTracks(std::span<const Track> tracks) {
         }
         return centre;
       };
-      lines_.push_back({.from = middle(track.boxes[i - 1]),
-                        .to = middle(track.boxes[i]),
+      lines_.push_back({.from = middle(trail.boxes[i - 1]),
+                        .to = middle(trail.boxes[i]),
                         .colour = picture.theme.selected,
                         .behind = OcclusionStyle::faint});
     }
@@ -137,7 +137,7 @@ void ViewContent::addTracks(std::span<const Track> tracks) {
 void ViewContent::updateLines() {
   const Snapshot& snapshot = *shown_.snapshot;
   const std::span<const Aabb> boxes = *snapshot.boxes;
-  const ViewOptions& options = shown_.options;
+  const DisplayOptions& options = shown_.options;
   lines_.clear();
   wire_boxes_.clear();
   left_out = 0;
@@ -146,8 +146,8 @@ void ViewContent::updateLines() {
       options.lines_of_all ? std::nullopt
                            : std::optional<std::span<const std::uint32_t>>(shown_.selection);
   if (options.pair_lines) {
-    const PairRun run = snapshot.pairs;
-    add(pairLines(boxes, {&run, 1}, {.colour = picture.theme.pair}, selected));
+    const PairRun pairs = snapshot.pairs;
+    add(pairLines(boxes, {&pairs, 1}, {.colour = picture.theme.pair}, selected));
   }
   if (const PairRun missed = snapshot.difference.missed_pairs; !missed.empty()) {
     add(pairLines(
@@ -163,7 +163,7 @@ void ViewContent::updateLines() {
     if (options.structure_near && !isEmpty(selected_box)) look.near = selected_box;
     add(structureOverlay(*snapshot.structure, look));
   }
-  addTracks(snapshot.tracks);
+  addTrails(snapshot.trails);
   if (options.xray) addXray();
   if (const std::optional<Aabb> plane = clipPlane(options.filter, snapshot.scene.world)) {
     wire_boxes_.push_back({.box = *plane,

@@ -50,7 +50,7 @@ class ViewContent {
     std::shared_ptr<const Snapshot> snapshot;
     std::shared_ptr<const PairComparison> comparison;
     std::vector<std::uint32_t> selection;
-    ViewOptions options;
+    DisplayOptions options;
     bool dark = false;
 
     friend bool operator==(const Shown&, const Shown&) = default;
@@ -60,7 +60,7 @@ class ViewContent {
   void updateVisible();
   void updateLines();
   void add(Overlay overlay);
-  void addTracks(std::span<const Track> tracks);
+  void addTrails(std::span<const Trail> trails);
   void addXray();
 
   Shown shown_;

@@ -47,12 +47,12 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
   const float pad = 6 * ui.scale;
   const float room = size.x - 4 * pad;
   if (room < 60 * ui.scale || size.y < 120 * ui.scale) return corner;
-  struct Line {
+  struct TextLine {
     ImFont* font;
     std::string text;
     ImU32 colour;
   };
-  std::vector<Line> lines;
+  std::vector<TextLine> lines;
   // All of one size: large, if there is room for that.
   const auto fits = [&](const std::string& text) {
     return ui.large->CalcTextSizeA(ui.large->FontSize, FLT_MAX, 0, text.c_str()).x <= room;
@@ -72,7 +72,7 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
 
   float width = 0;
   float height = 0;
-  for (const Line& line : lines) {
+  for (const TextLine& line : lines) {
     const ImVec2 extent =
         line.font->CalcTextSizeA(line.font->FontSize, FLT_MAX, 0, line.text.c_str());
     width = std::max(width, extent.x);
@@ -82,7 +82,7 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
   const ImVec2 end{at.x + width + 2 * pad, at.y + height + pad};
   draw.AddRectFilled(at, end, colour(ui.theme.background, kBackdrop), 4 * ui.scale);
   float y = at.y + pad / 2;
-  for (const Line& line : lines) {
+  for (const TextLine& line : lines) {
     draw.AddText(line.font, line.font->FontSize, {at.x + pad, y}, line.colour, line.text.c_str());
     y += line.font->FontSize;
   }

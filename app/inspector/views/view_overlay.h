@@ -1,4 +1,4 @@
-// What stands over the view: whose answer it shows, what the colours mean, the tools.
+// The overlay of a view: the source of its answer, the legend, the tools.
 #pragma once
 
 #include <string>

@@ -1,13 +1,13 @@
-// Worlds that change, for algorithms that know only boxes.
+// Changing worlds, for algorithms that handle only boxes.
 //
-// The bodies that take part get numbers without gaps, and the algorithm sees only these:
-// O(changed bodies) a frame. Its pairs are given the bodies' own ids, and those that are not wanted
-// are left out: O(pairs).
+// The bodies that take part get contiguous indices, and the algorithm sees only these bodies:
+// O(changed bodies) a frame. Its pairs are mapped back to body ids, and unwanted pairs are dropped:
+// O(pairs).
 //
-// What can be known of pairs beforehand keeps them from being formed. A body takes no part where no
-// layer that meets its own has anybody present. Where bodies of non-colliding layers (a level, say)
-// are near nobody that they meet, they take no part either: O(their number) in a frame in which
-// something changed. Worlds are put side by side.
+// Bodies without possible partners are filtered out beforehand. A body takes no part if all layers
+// that collide with its own are empty. Bodies of non-colliding layers (a level, say) take no part
+// either while no body that collides with them is near: O(their number) in a frame with changes.
+// Worlds are put side by side.
 
 #include <algorithm>
 #include <numeric>
@@ -23,7 +23,7 @@
 namespace broadmark {
 namespace {
 
-/// Wraps an algorithm whose frames may each have another number of bodies.
+/// Wraps an algorithm that accepts another number of bodies in each frame.
 class CompactingAdapter final : public BroadPhase {
  public:
   explicit CompactingAdapter(std::unique_ptr<BroadPhase> algorithm)
@@ -50,7 +50,7 @@ class CompactingAdapter final : public BroadPhase {
     bodies_.reserve(scene.objects);
     changed_.reserve(scene.objects);
     appearing_.reserve(scene.objects);
-    takeOver({first.index, first.boxes, all});
+    applyChanges({first.index, first.boxes, all});
     changed_.clear();
     SceneInfo compacted = scene;
     compacted.all_present = true;
@@ -60,7 +60,7 @@ class CompactingAdapter final : public BroadPhase {
   }
 
   void updateObjects(const Frame& frame) override {
-    takeOver(frame);
+    applyChanges(frame);
     algorithm_->updateObjects({frame.index, boxes_, changed_});
   }
 
@@ -75,10 +75,10 @@ class CompactingAdapter final : public BroadPhase {
     const PairRuns found = algorithm_->overlaps();
     if (pairs_.size() < found.size()) pairs_.resize(found.size());
     team_->run(found.size(), [&](int, Range runs) {
-      for (std::size_t run = runs.begin; run < runs.end; ++run) translate(found[run], pairs_[run]);
+      for (std::size_t i = runs.begin; i < runs.end; ++i) translate(found[i], pairs_[i]);
     });
     runs_.clear();
-    for (std::size_t run = 0; run < found.size(); ++run) runs_.push_back(pairs_[run].run());
+    for (std::size_t i = 0; i < found.size(); ++i) runs_.push_back(pairs_[i].run());
   }
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
   [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
@@ -104,26 +104,26 @@ class CompactingAdapter final : public BroadPhase {
 
   void findNonColliding(const SceneInfo& scene, std::span<const std::uint32_t> bodies) {
     const NonCollidingLayers layers(filter_, bodies);
-    const auto meeting = static_cast<std::size_t>(std::ranges::count_if(
+    const auto colliding = static_cast<std::size_t>(std::ranges::count_if(
         bodies, [&](std::uint32_t body) { return layers.collideWith(body); }));
-    if (layers.bodyCount() < meeting) return;  // to look who is near would cost more than it saves
+    if (layers.bodyCount() < colliding) return;  // a proximity test would cost more than it saves
     non_colliding_ = layers;
     for (const std::uint32_t body : bodies) {
-      if (non_colliding_.contains(body)) stranger_bodies_.push_back(body);
-      if (non_colliding_.collideWith(body)) meeting_bodies_.push_back(body);
+      if (non_colliding_.contains(body)) non_colliding_bodies_.push_back(body);
+      if (non_colliding_.collideWith(body)) colliding_bodies_.push_back(body);
     }
     near_.emplace(scene.world);
   }
 
-  void takeOver(const Frame& frame) {
+  void applyChanges(const Frame& frame) {
     changed_.clear();
     appearing_.clear();
     if (frame.changed->empty()) return;
     const bool layers_changed = countPresent(frame);
-    markMeeting(frame);
-    // Those that go first: then no place is left for good, and none is taken twice.
+    markColliding(frame);
+    // Removals first, so that no gap stays and no index is used twice.
     for (const std::uint32_t body : *frame.changed) consider(body, frame.boxes[body]);
-    for (const std::uint32_t body : stranger_bodies_) consider(body, frame.boxes[body]);
+    for (const std::uint32_t body : non_colliding_bodies_) consider(body, frame.boxes[body]);
     if (layers_changed) {
       for (std::uint32_t body = 0; body < places_.size(); ++body) consider(body, frame.boxes[body]);
     }
@@ -136,33 +136,33 @@ class CompactingAdapter final : public BroadPhase {
     std::erase_if(changed_, [this](std::uint32_t place) { return place >= boxes_.size(); });
   }
 
-  /// Whether a layer has got somebody to meet, or has nobody any more.
+  /// Whether a layer has gained its first possible partner, or lost its last one.
   bool countPresent(const Frame& frame) {
     for (const std::uint32_t body : *frame.changed) {
       const std::uint8_t is_there = isEmpty(frame.boxes[body]) ? 0 : 1;
       population_[filter_.layerOf(body)] += is_there;
       population_[filter_.layerOf(body)] -= std::exchange(present_[body], is_there);
     }
-    const std::uint32_t before = std::exchange(meetable_, 0);
+    const std::uint32_t before = std::exchange(active_layers_, 0);
     for (std::size_t layer = 0; layer < LayerMatrix::kLayers; ++layer) {
       for (std::size_t other = 0; other < LayerMatrix::kLayers; ++other) {
-        const bool meet = matrix_.collide(layer, other) && population_[other] > 0;
-        meetable_ |= std::uint32_t{meet} << layer;
+        const bool has_partner = matrix_.collide(layer, other) && population_[other] > 0;
+        active_layers_ |= std::uint32_t{has_partner} << layer;
       }
     }
-    return meetable_ != before;
+    return active_layers_ != before;
   }
 
-  void markMeeting(const Frame& frame) {
-    if (stranger_bodies_.empty()) return;
+  void markColliding(const Frame& frame) {
+    if (non_colliding_bodies_.empty()) return;
     near_->clear();
-    for (const std::uint32_t body : meeting_bodies_) {
+    for (const std::uint32_t body : colliding_bodies_) {
       if (present_[body] != 0) near_->mark(frame.boxes[body]);
     }
   }
 
   [[nodiscard]] bool takesPart(std::uint32_t body, const Aabb& box) {
-    if (present_[body] == 0 || (meetable_ >> filter_.layerOf(body) & 1) == 0) return false;
+    if (present_[body] == 0 || (active_layers_ >> filter_.layerOf(body) & 1) == 0) return false;
     return !non_colliding_.contains(body) || near_->isNear(box);
   }
 
@@ -189,7 +189,7 @@ class CompactingAdapter final : public BroadPhase {
     changed_.push_back(place);
   }
 
-  /// The last one takes the place.
+  /// The last body fills the gap.
   void remove(std::uint32_t place) {
     places_[bodies_[place]] = kAbsent;
     const std::uint32_t last = bodies_.back();
@@ -211,7 +211,7 @@ class CompactingAdapter final : public BroadPhase {
     std::size_t count = 0;
     for (const Pair pair : found) {
       if (pair.a >= pair.b || pair.b >= bodies_.size()) [[unlikely]] {
-        room[count++] = {kAbsent, kAbsent};  // as wrong as it was
+        room[count++] = {kAbsent, kAbsent};  // keeps an invalid pair invalid
         continue;
       }
       const Pair bodies = orderedPair(bodies_[pair.a], bodies_[pair.b]);
@@ -221,7 +221,7 @@ class CompactingAdapter final : public BroadPhase {
     wanted.advance(count);
   }
 
-  /// Boxes that were moved apart from others may have been rounded until they met.
+  /// Rounding of moved boxes can create an overlap: tests the true boxes.
   [[nodiscard]] bool isWanted(Pair places, Pair bodies) const {
     if (!filter_.wanted(bodies.a, bodies.b)) return false;
     return !worlds_->moves() || broadmark::overlaps(enlarged(true_boxes_[places.a], margin_),
@@ -233,24 +233,24 @@ class CompactingAdapter final : public BroadPhase {
   float margin_ = 0;
   CollisionFilter filter_;
 
-  // Who takes part.
+  // Which bodies take part.
   LayerMatrix matrix_;
-  std::vector<std::uint8_t> present_;                           ///< by body: 1 if it is
+  std::vector<std::uint8_t> present_;                           ///< by body: 1 if present
   std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present, by layer
-  std::uint32_t meetable_ = 0;        ///< bit by layer: somebody is there whom it meets
-  NonCollidingLayers non_colliding_;  ///< if that is worth it
-  std::vector<std::uint32_t> stranger_bodies_;
-  std::vector<std::uint32_t> meeting_bodies_;  ///< those that may meet non-colliding layers
-  std::optional<OccupancyBitmap> near_;        ///< of these
-  std::vector<std::uint32_t> appearing_;       ///< bodies that take part from this frame on
+  std::uint32_t active_layers_ = 0;   ///< bit by layer: a body that it collides with is present
+  NonCollidingLayers non_colliding_;  ///< empty where filtering does not pay
+  std::vector<std::uint32_t> non_colliding_bodies_;
+  std::vector<std::uint32_t> colliding_bodies_;  ///< bodies that collide with non-colliding layers
+  std::optional<OccupancyBitmap> near_;          ///< of the colliding bodies
+  std::vector<std::uint32_t> appearing_;         ///< bodies that take part from this frame on
 
   std::optional<WorldLattice> worlds_;
-  std::vector<Aabb> boxes_;             ///< of those who take part, side by side, in no order
-  std::vector<Aabb> true_boxes_;        ///< the same where they are, if that differs
-  std::vector<std::uint32_t> bodies_;   ///< whose they are
-  std::vector<std::uint32_t> places_;   ///< by body: where it is in these, or kAbsent
-  std::vector<std::uint32_t> changed_;  ///< places whose boxes changed in this frame, ascending
-  std::vector<PairBuffer> pairs_;       ///< a buffer for each run of the algorithm's
+  std::vector<Aabb> boxes_;             ///< of the participating bodies, side by side, unordered
+  std::vector<Aabb> true_boxes_;        ///< the same, unmoved; empty if no box is moved
+  std::vector<std::uint32_t> bodies_;   ///< by index: the body's id
+  std::vector<std::uint32_t> places_;   ///< by body: its index, or kAbsent
+  std::vector<std::uint32_t> changed_;  ///< indices with changed boxes in this frame, ascending
+  std::vector<PairBuffer> pairs_;       ///< a buffer for each run of the algorithm's answer
   std::vector<PairRun> runs_;
 };
 

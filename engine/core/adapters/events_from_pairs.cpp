@@ -1,8 +1,8 @@
-// Events, for algorithms that know only the set of pairs of each frame.
+// Events, for algorithms that report only the set of pairs of each frame.
 //
-// The pairs of a frame are sorted, by radix, and merged with those of the frame before: what is in
-// one of the two lists only has begun or ended. O(k), k the pairs, shared out over the team by the
-// lower body. A steady state allocates nothing.
+// The pairs of a frame are radix-sorted and merged with the pairs of the frame before: a pair in
+// only one of the two lists has begun or ended. O(k), k the pairs, divided among the team's workers
+// by the lower body. A steady state allocates nothing.
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,8 @@
 namespace broadmark {
 namespace {
 
-/// Wraps an algorithm, whose answers it turns into events at the end of phase 4. A fault in an
-/// answer is one of the events, too: a pair reported twice begins twice, one that is none begins in
-/// every frame.
+/// Turns an algorithm's answers into events at the end of phase 4. Faults in an answer become
+/// events, too: a pair reported twice begins twice, an invalid pair begins in every frame.
 class EventsFromPairs final : public BroadPhase {
  public:
   explicit EventsFromPairs(std::unique_ptr<BroadPhase> algorithm)
@@ -26,14 +25,14 @@ class EventsFromPairs final : public BroadPhase {
     algorithm_->visitParameters(visit);
   }
   [[nodiscard]] float margin() const override { return algorithm_->margin(); }
-  /// The pairs of the initial pose are found as those of a frame in which nothing changed.
+  /// Finds the pairs of the initial pose as in a frame without changes.
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     team_ = &execution.team();
     bodies_ = first.boxes.size();
     body_bits_ = static_cast<int>(std::bit_width(bodies_));
-    parts_ = std::vector<Part>(static_cast<std::size_t>(team_->size()));
-    for (Part& part : parts_) part.found.resize(parts_.size());
+    parts_ = std::vector<WorkerPairs>(static_cast<std::size_t>(team_->size()));
+    for (WorkerPairs& part : parts_) part.found.resize(parts_.size());
     began_.resize(parts_.size());
     ended_.resize(parts_.size());
     algorithm_->initialize(scene, first, execution);
@@ -72,13 +71,13 @@ class EventsFromPairs final : public BroadPhase {
   [[nodiscard]] std::string validate() const override { return algorithm_->validate(); }
 
  private:
-  /// Pairs as numbers, which sort as they do.
+  /// Pairs encoded as integers in the same order.
   using Keys = std::vector<std::uint64_t>;
-  /// A worker's: the pairs of its bodies.
-  struct alignas(64) Part {
-    std::vector<Keys> found;  ///< in the worker's share of the answer, by whose they are
+  /// A worker's share: the pairs that it owns.
+  struct alignas(64) WorkerPairs {
+    std::vector<Keys> found;  ///< in the worker's share of the answer, by owner
     Keys now;                 ///< ascending, once sorted
-    Keys before;              ///< likewise
+    Keys before;              ///< the same for the previous frame
     Keys spare;               ///< for sorting
     PairBuffer began;
     PairBuffer ended;
@@ -88,7 +87,8 @@ class EventsFromPairs final : public BroadPhase {
     return std::uint64_t{pair.a} << body_bits_ | pair.b;
   }
 
-  /// Of every so many blocks of bodies one: low numbers are lower bodies more often than high ones.
+  /// Blocks of bodies are dealt out in turn: low ids are the lower body of more pairs than high
+  /// ids.
   [[nodiscard]] std::size_t ownerOf(Pair pair) const {
     constexpr std::uint32_t kBlock = 64;
     if (parts_.size() == 1) return 0;
@@ -96,20 +96,20 @@ class EventsFromPairs final : public BroadPhase {
   }
 
   void shareOut(PairRuns answer, std::size_t worker) {
-    Part& part = parts_[worker];
+    WorkerPairs& part = parts_[worker];
     for (Keys& found : part.found) found.clear();
     part.began.clear();
     part.ended.clear();
     auto [begin, end] =
         share(pairCount(answer), static_cast<int>(parts_.size()), static_cast<int>(worker));
-    for (const PairRun run : answer) {
-      const std::size_t from = std::min(begin, run.size());
-      const std::size_t to = std::min(end, run.size());
-      for (const Pair pair : run.subspan(from, to - from)) {
+    for (const PairRun chunk : answer) {
+      const std::size_t from = std::min(begin, chunk.size());
+      const std::size_t to = std::min(end, chunk.size());
+      for (const Pair pair : chunk.subspan(from, to - from)) {
         if (pair.a < pair.b && pair.b < bodies_) [[likely]] {
           part.found[ownerOf(pair)].push_back(keyOf(pair));
         } else {
-          *part.began.room(1) = pair;  // as wrong as it is
+          *part.began.room(1) = pair;  // keeps an invalid pair invalid
           part.began.advance(1);
         }
       }
@@ -119,19 +119,19 @@ class EventsFromPairs final : public BroadPhase {
   }
 
   void gather(std::size_t worker) {
-    Part& part = parts_[worker];
+    WorkerPairs& part = parts_[worker];
     part.now.swap(part.before);
     part.now.clear();
-    for (const Part& from : parts_) {
+    for (const WorkerPairs& from : parts_) {
       part.now.insert(part.now.end(), from.found[worker].begin(), from.found[worker].end());
     }
   }
 
-  void sort(Part& part) const {
+  void sort(WorkerPairs& part) const {
     constexpr int kDigitBits = 11;
     constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-    constexpr std::size_t kFew = 512;  // for these comparing takes less
-    if (part.now.size() < kFew) {
+    constexpr std::size_t kMinForRadixSort = 512;  // below this a comparison sort is faster
+    if (part.now.size() < kMinForRadixSort) {
       std::ranges::sort(part.now);
       return;
     }
@@ -147,7 +147,7 @@ class EventsFromPairs final : public BroadPhase {
     }
   }
 
-  void compare(Part& part) const {
+  void compare(WorkerPairs& part) const {
     const auto add = [this](std::uint64_t key, PairBuffer& pairs) {
       const std::uint64_t mask = (std::uint64_t{1} << body_bits_) - 1;
       pairs.add(static_cast<std::uint32_t>(key >> body_bits_),
@@ -168,8 +168,8 @@ class EventsFromPairs final : public BroadPhase {
   std::unique_ptr<BroadPhase> algorithm_;
   ThreadTeam* team_ = nullptr;
   std::size_t bodies_ = 0;
-  int body_bits_ = 0;  ///< that a body's number takes
-  std::vector<Part> parts_;
+  int body_bits_ = 0;  ///< bits per body id
+  std::vector<WorkerPairs> parts_;
   std::vector<PairRun> began_;
   std::vector<PairRun> ended_;
 };

@@ -1,4 +1,4 @@
-// Who may be near whom, roughly: a coarse grid of which cells some boxes touch.
+// A conservative proximity test: a coarse grid that marks the cells touched by a set of boxes.
 #pragma once
 
 #include <array>
@@ -10,9 +10,8 @@
 
 namespace broadmark {
 
-/// 64³ cells over a world, one bit each, those at its sides reaching on outwards. A box that
-/// overlaps a marked one touches a marked cell, always: the cell of a number never falls when the
-/// number rises.
+/// 64³ cells over a world, one bit each; the outermost cells extend to infinity. A box that
+/// overlaps a marked box always touches a marked cell, since cellOf() is monotone.
 class OccupancyBitmap {
  public:
   explicit OccupancyBitmap(const Aabb& world) {
@@ -40,9 +39,9 @@ class OccupancyBitmap {
   }
 
  private:
-  static constexpr std::size_t kCells = 64;  ///< per axis: a row is one word
+  static constexpr std::size_t kCells = 64;  ///< per axis: a row is one 64-bit word
 
-  /// Also of infinity and, at the least, of what is no number.
+  /// Also defined for infinity and NaN.
   [[nodiscard]] std::size_t cellOf(float position, int axis) const {
     const float cell = (position - low_[axis]) * cells_per_unit_[axis];
     if (!(cell > 0)) return 0;
@@ -55,7 +54,7 @@ class OccupancyBitmap {
     return ~std::uint64_t{0} >> (kCells - 1 - last) & ~std::uint64_t{0} << first;
   }
 
-  /// Calls visit(row) for the rows that the box touches until it returns true; whether it did.
+  /// Calls visit(row) for the touched rows until it returns true; returns whether it did.
   template <class Visit>
   bool forEachRow(const Aabb& box, Visit visit) {
     const std::size_t last_y = cellOf(box.max[1], 1);

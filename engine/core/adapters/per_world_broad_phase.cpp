@@ -1,13 +1,13 @@
 // Several worlds at one place, for algorithms that would mix their bodies up in one structure.
 //
-// Each world has an instance of the algorithm, which knows of no other: its bodies have numbers
-// without gaps, in the order of their ids, and of the collision filter it sees layers and tags. A
-// frame costs O(changed bodies), what the instances of the worlds take in which something changed,
-// and O(their pairs) to give these the bodies' own ids. The other worlds keep their answers.
+// Each world has an independent instance of the algorithm: its bodies have contiguous indices, in
+// the order of their ids, and its collision filter has only layers and tags. A frame costs
+// O(changed bodies), the work of the instances with changes, and O(their pairs) to map these back
+// to body ids. The other worlds keep their answers.
 //
-// While a world is in the caches its instance goes through all of its phases: they count as phase
-// 4, and the copying of boxes as phase 1. World after world for each phase, many small ones took up
-// to 1.3 times as long.
+// An instance runs all of its phases while its world is in the caches: they count as phase 4, and
+// the copying of boxes as phase 1. Running each phase over all worlds took up to 1.3 times as long
+// with many small worlds.
 
 #include <fmt/format.h>
 
@@ -25,9 +25,9 @@
 namespace broadmark {
 namespace {
 
-constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoBody = std::numeric_limits<std::uint32_t>::max();
 
-/// What one world's instance gets to know of the scene.
+/// The scene as one world's instance sees it.
 SceneInfo sceneOf(const SceneInfo& all, std::span<const std::uint32_t> bodies) {
   std::vector<BodyGroups> groups;
   for (const std::uint32_t body : bodies) {
@@ -35,13 +35,13 @@ SceneInfo sceneOf(const SceneInfo& all, std::span<const std::uint32_t> bodies) {
     groups.back().world = 0;
   }
 
-  SceneInfo one = all;
-  one.objects = static_cast<std::uint32_t>(bodies.size());
-  one.filter = {groups, all.filter.matrix()};
-  return one;
+  SceneInfo world = all;
+  world.objects = static_cast<std::uint32_t>(bodies.size());
+  world.filter = {groups, all.filter.matrix()};
+  return world;
 }
 
-/// Sums of what several instances count, by name, in the order in which the names came.
+/// Sums of the instances' counters, by name, in order of first appearance.
 class Sums {
  public:
   void add(std::string_view name, std::uint64_t count) {
@@ -66,20 +66,20 @@ class Sums {
   std::vector<Sum> sums_;
 };
 
-/// Wraps the instances. A team of several workers gets a fixed share of the worlds for each; where
-/// the worlds are fewer than the workers, they come one after the other, each for the whole team.
+/// Wraps the instances. Each worker of a team gets a fixed share of the worlds; where the worlds
+/// are fewer than the workers, they run sequentially, each on the whole team.
 class PerWorldBroadPhase final : public BroadPhase {
  public:
-  /// Makes the instances. With `concurrent`, several may be called at once.
+  /// Makes the instances. With `concurrent`, instances may be called at the same time.
   PerWorldBroadPhase(const SceneInfo& scene, const InstanceMaker& make, bool concurrent)
       : concurrent_(concurrent) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> bodies_of;
     for (std::uint32_t body = 0; body < scene.objects; ++body) {
       bodies_of[scene.filter.worlds()[body]].push_back(body);
     }
-    places_.assign(scene.objects, {kNobody, 0});
+    places_.assign(scene.objects, {kNoBody, 0});
     for (auto& [number, bodies] : bodies_of) {
-      if (bodies.size() < 2) continue;  // there are no pairs
+      if (bodies.size() < 2) continue;  // no pairs are possible
       for (std::uint32_t i = 0; i < bodies.size(); ++i) {
         places_[bodies[i]] = {static_cast<std::uint32_t>(worlds_.size()), i};
       }
@@ -116,8 +116,8 @@ class PerWorldBroadPhase final : public BroadPhase {
     const bool is_first = std::exchange(is_first_, false);
     if (!is_first) active_.clear();
     for (const std::uint32_t body : *frame.changed) {
-      const Place place = places_[body];
-      if (place.world == kNobody) continue;
+      const BodyLocation place = places_[body];
+      if (place.world == kNoBody) continue;
       World& world = worlds_[place.world];
       if (world.changed.empty() && !is_first) active_.push_back(place.world);
       world.changed.push_back(place.body);
@@ -194,17 +194,17 @@ class PerWorldBroadPhase final : public BroadPhase {
   }
 
  private:
-  /// One world. On cache lines of its own: its neighbours may be another worker's.
+  /// One world, on cache lines of its own: neighbouring worlds may belong to other workers.
   struct alignas(64) World {
-    std::uint32_t number = 0;           ///< as the filter has it
+    std::uint32_t number = 0;           ///< its number in the collision filter
     std::vector<std::uint32_t> bodies;  ///< their ids, ascending
     SceneInfo scene;
     std::unique_ptr<BroadPhase> instance;
     ExecutionContext* execution = nullptr;
-    std::uint32_t index = 0;  ///< of the instance's frame: it sees only those with changes
+    std::uint32_t index = 0;  ///< of the instance's last frame: only frames with changes count
     std::vector<Aabb> boxes;
-    std::vector<std::uint32_t> changed;  ///< positions in these, ascending
-    std::vector<Pair> pairs;             ///< by the bodies' ids
+    std::vector<std::uint32_t> changed;  ///< indices into `bodies`, ascending
+    std::vector<Pair> pairs;             ///< by body id
     std::vector<Pair> began;
     std::vector<Pair> ended;
 
@@ -212,11 +212,11 @@ class PerWorldBroadPhase final : public BroadPhase {
     void translate(PairRuns found, std::vector<Pair>& into) const {
       into.resize(pairCount(found));
       auto next = into.begin();
-      for (const PairRun run : found) {
-        for (const Pair pair : run) {
+      for (const PairRun chunk : found) {
+        for (const Pair pair : chunk) {
           const bool exist = std::max(pair.a, pair.b) < bodies.size();
           *next++ = exist ? Pair{bodies[pair.a], bodies[pair.b]}
-                          : Pair{kNobody, kNobody};  // as wrong as it was
+                          : Pair{kNoBody, kNoBody};  // keeps an invalid pair invalid
         }
       }
     }
@@ -226,13 +226,13 @@ class PerWorldBroadPhase final : public BroadPhase {
       translate(events.ended, ended);
     }
   };
-  /// A body's world and its position there.
-  struct Place {
+  /// A body's world and its index there.
+  struct BodyLocation {
     std::uint32_t world = 0;
     std::uint32_t body = 0;
   };
 
-  /// Calls call(world) for each world in which something changed, on the worker that it belongs to.
+  /// Calls call(world) for each world with changes, on the worker that owns it.
   template <class Call>
   void forEachActive(Call call) {
     if (team_ == nullptr) {
@@ -247,7 +247,7 @@ class PerWorldBroadPhase final : public BroadPhase {
     });
   }
 
-  /// Which worker runs which world, for good: it finds it in its caches.
+  /// Assigns the worlds to workers, permanently: a worker finds its worlds in its caches.
   void shareOut(ExecutionContext& execution) {
     const auto workers = static_cast<std::size_t>(execution.threads());
     if (concurrent_ && workers > 1 && worlds_.size() >= workers) {
@@ -271,13 +271,13 @@ class PerWorldBroadPhase final : public BroadPhase {
     }
   }
 
-  ThreadTeam* team_ = nullptr;  ///< if the worlds are shared out over its workers
-  std::vector<std::unique_ptr<ExecutionContext>> executions_;  ///< then: one for each of these
-  std::vector<World> worlds_;  ///< those of two bodies or more, by number
-  std::vector<Place> places_;  ///< by body
+  ThreadTeam* team_ = nullptr;  ///< null unless worlds are divided among workers
+  std::vector<std::unique_ptr<ExecutionContext>> executions_;  ///< one per worker, if team_ is set
+  std::vector<World> worlds_;         ///< with two bodies or more, by number
+  std::vector<BodyLocation> places_;  ///< by body
   bool concurrent_;
   bool reports_events_ = false;
-  std::vector<std::uint32_t> active_;  ///< the worlds in which something changed in this frame
+  std::vector<std::uint32_t> active_;  ///< the worlds with changes in this frame
   bool is_first_ = true;               ///< no frame was run: there are no answers to keep
   std::vector<PairRun> runs_;          ///< by world
   std::vector<PairRun> began_;         ///< by active world

@@ -1,4 +1,4 @@
-// A drawing by an algorithm that knows its bodies by other numbers.
+// Maps an algorithm's body indices in a drawing back to the scene's.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace broadmark {
 
-/// Passes a drawing on, and what is told of bodies under the scene's own numbers.
+/// Forwards a drawing, with body indices mapped to the scene's.
 class RemappingDebugDraw final : public DebugDraw {
  public:
-  /// `bodies`: the scene's numbers, by those of the algorithm; borrowed.
+  /// `bodies`: the scene's body for each of the algorithm's; borrowed.
   RemappingDebugDraw(DebugDraw& draw, std::span<const std::uint32_t> bodies)
       : draw_(draw), bodies_(bodies) {}
 

@@ -1,4 +1,4 @@
-// Worlds at the same place put side by side, for algorithms that know only boxes.
+// Worlds at the same place put side by side, for algorithms that handle only boxes.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace broadmark {
 
-/// Moves the boxes of each world to a place of its own in a lattice, as large as the scene's world.
-/// Boxes that overlap do so afterwards: rounding never turns the order of two sums around. Others
-/// may come to overlap, those of bodies of two worlds that poke out among them.
+/// Translates the boxes of each world to a separate cell of a lattice; a cell is as large as the
+/// scene's world. Boxes that overlap still do: rounding is monotone. Other boxes may come to
+/// overlap, among them those of bodies of two worlds that poke out.
 class WorldLattice {
  public:
-  /// The lattice is a cube of worlds, or as close to one as their number allows.
+  /// The lattice is a cube of worlds, or as near to a cube as their number allows.
   explicit WorldLattice(const SceneInfo& scene) : world_(scene.world) {
     const std::span<const std::uint32_t> worlds = scene.filter.worlds();
     std::vector<std::uint32_t> present(worlds.begin(), worlds.end());
@@ -32,7 +32,7 @@ class WorldLattice {
     for (int axis = 0; axis < 3; ++axis) {
       step[axis] = kSpacing * (scene.world.max[axis] - scene.world.min[axis]);
       all.max[axis] += step[axis] * static_cast<float>(per_axis - 1);
-      if (!(std::abs(all.max[axis]) < kFarthest)) return;
+      if (!(std::abs(all.max[axis]) < kMaxExtent)) return;
     }
 
     world_ = all;
@@ -50,7 +50,7 @@ class WorldLattice {
     }
   }
 
-  /// False where there is one world, or worlds so large that they cannot be moved.
+  /// False for one world, or worlds too large to be moved.
   [[nodiscard]] bool moves() const { return !offsets_.empty(); }
   [[nodiscard]] Aabb moved(std::uint32_t body, Aabb box) const {
     const std::array<float, 3>& offset = offsets_[numbers_[body]];
@@ -60,17 +60,17 @@ class WorldLattice {
     }
     return box;
   }
-  /// What holds all worlds: the scene's own if nothing moves.
+  /// The bounds of all worlds: the scene's own if no world moves.
   [[nodiscard]] const Aabb& world() const { return world_; }
 
  private:
-  /// From one world to the next, in extents of a world: bodies may poke out a little.
+  /// Distance between worlds, in extents of a world: bodies may poke out a little.
   static constexpr float kSpacing = 1.25F;
 
-  /// Where this is added to a box, it stays as it is, or is far from overflowing.
-  static constexpr float kFarthest = 1e30F;
+  /// The offset of a box within this does not overflow.
+  static constexpr float kMaxExtent = 1e30F;
 
-  std::vector<std::uint32_t> numbers_;  ///< by body: which of the worlds it is in, without gaps
+  std::vector<std::uint32_t> numbers_;  ///< by body: its world, numbered without gaps
   std::vector<std::array<float, 3>> offsets_;
   Aabb world_;
 };

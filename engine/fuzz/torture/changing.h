@@ -1,4 +1,4 @@
-// What changes about a world beside its boxes: which bodies are there, and which pairs are wanted.
+// Changes of a world beside its boxes: presence of bodies, and collision filters.
 #pragma once
 
 #include <array>
@@ -14,24 +14,24 @@
 
 namespace broadmark::inputs {
 
-/// Which bodies are there in a frame.
+/// Whether a body is present in a frame.
 using Presence = std::function<bool(std::uint32_t body, std::uint32_t frame)>;
 
 namespace presences {
 
 inline bool always(std::uint32_t, std::uint32_t) { return true; }
 inline bool never(std::uint32_t, std::uint32_t) { return false; }
-/// Some bodies come and others go in every frame; a number is used again at once.
+/// Some bodies appear and others disappear in every frame; ids are reused at once.
 inline bool random(std::uint32_t body, std::uint32_t frame) {
   return Random(body, frame).integer(0, 2) > 0;
 }
-/// One in fifty comes or goes.
+/// One body in fifty is absent in each frame.
 inline bool seldom(std::uint32_t body, std::uint32_t frame) { return (body + frame) % 50 != 0; }
 /// All vanish at once, and come back.
 inline bool allOrNone(std::uint32_t, std::uint32_t frame) { return frame % 3 != 2; }
-/// More and more.
+/// A growing number.
 inline bool growing(std::uint32_t body, std::uint32_t frame) { return body < 7 * frame; }
-/// Fewer and fewer.
+/// A decreasing number.
 inline bool shrinking(std::uint32_t body, std::uint32_t frame) { return body % (frame + 1) == 0; }
 
 }  // namespace presences
@@ -50,10 +50,10 @@ inline constexpr std::array kPresences = {
     NamedPresence{"shrinking", presences::shrinking},
 };
 
-/// Makes each body's groups.
+/// Generates a body's groups.
 using Grouping = std::function<BodyGroups(Random& random, std::uint32_t body)>;
 
-/// Without a seed: that of their number.
+/// The default seed is n.
 inline CollisionFilter filterOf(std::size_t n, const LayerMatrix& matrix, const Grouping& grouping,
                                 std::optional<std::uint64_t> seed = {}) {
   Random random(seed.value_or(n), 0);
@@ -67,7 +67,7 @@ struct NamedFilter {
   CollisionFilter filter;
 };
 
-/// Filters of n bodies, each kind alone and all together.
+/// Filters of n bodies, each kind separately and all combined.
 inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64_t> seed = {}) {
   const auto of = [=](const LayerMatrix& matrix, const Grouping& grouping) {
     return filterOf(n, matrix, grouping, seed);
@@ -83,9 +83,9 @@ inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64
   for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
     for (std::size_t b = 0; b <= a; ++b) some.set(a, b, random.integer(0, 1) == 0);
   }
-  // Layer 0: fixtures, layer 1: bodies that meet all, layer 2: triggers, which meet only these.
+  // Layer 0: fixtures, layer 1: bodies that collide with all, layer 2: triggers, only with layer 1.
   const LayerMatrix usual = LayerMatrix().set(0, 1).set(1, 1).set(2, 1);
-  const LayerMatrix one = LayerMatrix().set(0, 0);
+  const LayerMatrix one_layer = LayerMatrix().set(0, 0);
   // Layer 0: a level, layer 1: bodies in it.
   const LayerMatrix level = LayerMatrix().set(0, 1).set(1, 1);
   const auto any = [=](Random& r, std::uint32_t) {
@@ -109,10 +109,10 @@ inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64
           [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
       {"no pair wanted", of(LayerMatrix(), [](Random&, std::uint32_t) { return BodyGroups{}; })},
       {"worlds",
-       of(one, [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
+       of(one_layer, [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
       {"a world each",
-       of(one, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
-      {"tags", of(one,
+       of(one_layer, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
+      {"tags", of(one_layer,
                   [=](Random& r, std::uint32_t) {
                     return BodyGroups{.tags = {number(r, 30), number(r, 30), number(r, 30)}};
                   })},

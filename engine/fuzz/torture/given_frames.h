@@ -1,4 +1,4 @@
-// Frames that are made up, not recorded.
+// Synthetic frames, not from a recording.
 #pragma once
 
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace broadmark::inputs {
 
-/// What the header of a recording of these frames would say; its world holds all boxes.
+/// The header for a recording of these frames; its world contains all boxes.
 inline SceneInfo sceneOf(const std::vector<std::vector<Aabb>>& frames) {
   SceneInfo scene;
   scene.name = "Test";
@@ -17,12 +17,12 @@ inline SceneInfo sceneOf(const std::vector<std::vector<Aabb>>& frames) {
   scene.frames = static_cast<std::uint32_t>(frames.size() - 1);
   scene.world = {{-1, -1, -1, 0}, {1, 1, 1, 0}};
   for (const std::vector<Aabb>& boxes : frames) {
-    for (const Aabb& box : boxes) scene.world = merged(scene.world, box);  // or an empty one
+    for (const Aabb& box : boxes) scene.world = merged(scene.world, box);  // may be an empty box
   }
   return scene;
 }
 
-/// A scene of these frames, of which there is one at least.
+/// A scene with at least one given frame.
 class GivenFrames final : public IndexedFrames {
  public:
   GivenFrames(SceneInfo scene, std::vector<std::vector<Aabb>> frames)

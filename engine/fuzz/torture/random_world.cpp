@@ -13,10 +13,10 @@ namespace {
 using inputs::Random;
 
 constexpr const char* kGiven = "given";
-/// Each frame of another kind.
+/// Each frame by another generator.
 constexpr const char* kUnrelated = "unrelated frames";
 
-/// Mostly few: what goes wrong with many bodies mostly does so with few, too.
+/// Mostly small: most faults with many bodies also occur with few.
 std::size_t randomCount(Random& random, bool all_overlap) {
   const int size = random.integer(1, 20);
   int most = 64;
@@ -30,10 +30,10 @@ std::uint32_t randomFrameCount(Random& random) {
   return static_cast<std::uint32_t>(random.integer(1, random.onceIn(10) ? 30 : 8));
 }
 
-/// Takes away those that are not there.
+/// Removes absent bodies from the frames.
 void keepPresent(std::vector<std::vector<Aabb>>& frames, Random& random) {
   const inputs::NamedPresence& presence = random.anyOf(inputs::kPresences);
-  // Each world begins somewhere else in what comes and goes.
+  // Each world begins at a random frame of the presence pattern.
   const auto later = static_cast<std::uint32_t>(random.integer(0, 20));
   for (std::uint32_t frame = 0; frame < frames.size(); ++frame) {
     for (std::uint32_t body = 0; body < frames[frame].size(); ++body) {
@@ -64,7 +64,7 @@ RandomWorld madeUp(Random& random) {
           std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames))};
 }
 
-/// Numbers in a row, of `count` so many at most from a random one on.
+/// Up to `most` consecutive integers below `count`, from a random one on.
 std::vector<std::uint32_t> randomRow(Random& random, std::uint32_t count, std::uint32_t most) {
   std::vector<std::uint32_t> row(std::min(count, most));
   const auto first = random.integer(0, static_cast<int>(count - row.size()));
@@ -72,7 +72,7 @@ std::vector<std::uint32_t> randomRow(Random& random, std::uint32_t count, std::u
   return row;
 }
 
-/// These bodies, in this order, in these frames.
+/// The given bodies in this order, in the given frames.
 template <class BoxesOf>
 std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
                                       const std::vector<std::uint32_t>& bodies,
@@ -87,7 +87,7 @@ std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
   return std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(all));
 }
 
-/// All of a recording, if it is small; else some bodies that follow each other, in some frames.
+/// All of a small recording; else some consecutive bodies, in some frames.
 RandomWorld partOf(const TortureRecording& given, Random& random) {
   constexpr std::uint32_t kMaxBodies = 1000;
   constexpr std::uint32_t kMaxFrames = 31;

@@ -1,4 +1,4 @@
-// Worlds made up at random.
+// Random worlds.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@
 namespace broadmark {
 
 struct RandomWorld {
-  std::string name;  ///< of its kind
+  std::string name;  ///< of its generator
   std::unique_ptr<IndexedFrames> frames;
 };
 
-/// A small world, of one frame or more after the initial pose.
+/// A small world, with at least one frame after the initial pose.
 RandomWorld randomWorld(inputs::Random& random, const TortureOptions& options);
 
 /// The same with the bodies in another order.

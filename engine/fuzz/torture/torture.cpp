@@ -15,10 +15,10 @@ namespace {
 
 using inputs::Random;
 
-/// Worlds of a round: so many that to start its process hardly counts.
+/// Worlds per round: enough to amortise the start of a process.
 constexpr int kWorlds = 40;
 
-/// Somewhere between: each order of magnitude above the least is as likely.
+/// Log-uniform above `min`.
 double between(Random& random, double min, double max) {
   const int side = random.integer(0, 9);
   if (side == 0) return min;
@@ -40,7 +40,7 @@ void setAnyhow(Random& random, const Parameter& parameter) {
   }
 }
 
-/// Every other time the defaults.
+/// Half of the time the defaults.
 ParameterValues randomParameters(Random& random, const Algorithm& algorithm) {
   if (random.onceIn(2)) return {};
   const std::unique_ptr<BroadPhase> instance = algorithm.create();
@@ -82,17 +82,17 @@ class Round {
   }
 
  private:
-  /// One that shows in a new process, too: malloc and libraries keep memory as they like.
+  /// A leak that is also reproducible in a new process: caches of malloc and libraries vary.
   std::optional<Fault> leak(IndexedFrames& world) {
     const AlgorithmTraits& traits = case_.algorithm.traits;
     if (traits.library_leaks || traits.on_device || !trial_.leak(world)) return std::nullopt;
     return Trial(case_, options_.make_host, options_.cancelled).leak(world);
   }
 
-  /// And sometimes once more.
+  /// Repeats some worlds.
   std::optional<Fault> runOnce(RandomWorld& world, TortureCoverage& coverage) {
     constexpr int kSeldom = 8;
-    // An exact answer is the same one every time, or wrong.
+    // Exact answers must be equal both times.
     std::vector<PairDigest> first;
     std::vector<PairDigest> second;
     if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &first)) return fault;
@@ -120,7 +120,7 @@ class Round {
   }
 
   TortureRound finished(TortureRound round, RandomWorld world, const Fault& fault) {
-    round.finding = TortureFinding{.run = case_,
+    round.finding = TortureFinding{.test_case = case_,
                                    .world = world.name,
                                    .fault = fault,
                                    .frames = std::move(world.frames),
@@ -129,16 +129,16 @@ class Round {
     return round;
   }
 
-  /// The fault, if it shows on these frames as it did, in the last one.
+  /// The fault, if these frames reproduce it in their last frame.
   std::optional<Fault> again(Trial& trial, IndexedFrames& frames, FaultKind kind) const {
     auto fault = kind == FaultKind::leak ? trial.leak(frames) : trial.run(frames);
     if (!fault || fault->kind != kind) return std::nullopt;
-    // One of the initial pose is told of the first frame, which no recording is without.
+    // A fault of the initial pose is reported as frame 1, as every recording has one.
     if (std::max(fault->frame, 1U) < frames.scene().frames) return std::nullopt;
     return fault;
   }
 
-  /// Anew in a process of its own: what is left behind there by other worlds is no longer a cause.
+  /// In a new process, to exclude effects of earlier worlds.
   void shrink(TortureFinding& finding) const {
     const std::uint32_t last = finding.fault.kind == FaultKind::unsteady
                                    ? finding.frames->scene().frames
@@ -158,7 +158,7 @@ class Round {
       const ShrunkPart shrunk = shrinkPart(*finding.frames, last, suspects, fails, limits);
       finding.part = shrunk.part;
       finding.minimal = shrunk.minimal;
-    } catch (const InputError&) {  // none of the trials failed
+    } catch (const InputError&) {  // not reproducible
       finding.fault.text += ", but not when it was run again";
       finding.fault.kind = FaultKind::unsteady;
     }
@@ -170,7 +170,7 @@ class Round {
 
   [[nodiscard]] CancelQuery untilTimeIsUp() const {
     const auto end = std::chrono::steady_clock::now() +
-                     std::chrono::duration<double>(options_.most_shrink_seconds);
+                     std::chrono::duration<double>(options_.max_shrink_seconds);
     return [this, end] {
       return std::chrono::steady_clock::now() > end || (options_.cancelled && options_.cancelled());
     };

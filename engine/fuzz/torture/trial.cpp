@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-Trial::Trial(Case run, const ExecutorFactory& make_host, const CancelQuery& cancelled)
-    : case_(std::move(run)), make_host_(make_host), cancelled_(cancelled) {}
+Trial::Trial(Case test_case, const ExecutorFactory& make_host, const CancelQuery& cancelled)
+    : case_(std::move(test_case)), make_host_(make_host), cancelled_(cancelled) {}
 
 std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* answers) {
   supported_ = true;
@@ -68,11 +68,10 @@ std::optional<std::uint64_t> Trial::heapAfter(IndexedFrames& world, int passes) 
 }
 
 std::optional<Fault> Trial::leak(IndexedFrames& world) {
-  // What libraries and malloc itself keep for the next time grows less and less. A leak grows with
-  // the passes.
+  // Memory cached by libraries and malloc stops growing eventually. A leak grows with the passes.
   constexpr int kFirstPasses = 10;
   constexpr std::array kPasses = {8, 16, 32, 64};
-  constexpr std::uint64_t kMinBytes = 16;  // that an allocation takes
+  constexpr std::uint64_t kMinBytes = 16;  // smallest allocation
   constexpr double kGrows = 1.5;
   std::optional<std::uint64_t> before = heapAfter(world, kFirstPasses);
   std::uint64_t grown = 0;

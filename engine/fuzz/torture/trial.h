@@ -1,4 +1,4 @@
-// One case on one world: what goes wrong there.
+// A case on a world, and its faults.
 #pragma once
 
 #include <optional>
@@ -9,26 +9,26 @@
 
 namespace broadmark {
 
-/// Runs a case on worlds, in one host until something goes wrong in it; then in a new one.
+/// Runs a case on worlds, in one host until a fault; then in a new host.
 class Trial {
  public:
   /// `make_host` and `cancelled` are borrowed. Throws InputError for a bad parameter.
-  Trial(Case run, const ExecutorFactory& make_host, const CancelQuery& cancelled);
+  Trial(Case test_case, const ExecutorFactory& make_host, const CancelQuery& cancelled);
 
-  /// All frames of a world; what goes wrong first. With `answers`: appends the digest of each
-  /// answer. Throws Cancelled, and InputError for a device that does not exist.
+  /// Runs all frames of a world; returns the first fault. With `answers`: appends the digest of
+  /// each answer. Throws Cancelled, and InputError for a device that does not exist.
   std::optional<Fault> run(IndexedFrames& world, std::vector<PairDigest>* answers = nullptr);
-  /// Whether every pass over a world takes memory and keeps it.
+  /// Whether every pass over a world leaks memory.
   std::optional<Fault> leak(IndexedFrames& world);
-  /// Whether the last world could be run at all.
+  /// Whether the case supports the last world.
   [[nodiscard]] bool supported() const { return supported_; }
 
  private:
   std::optional<Fault> runFrames(IndexedFrames& world, std::vector<PairDigest>* answers);
   std::optional<Fault> judge(const Frame& frame);
-  /// Why the host has no instance any more.
+  /// The fault that ended the host's instance.
   std::optional<Fault> ended(std::uint32_t frame);
-  /// After so many passes.
+  /// The allocated memory after `passes` passes.
   std::optional<std::uint64_t> heapAfter(IndexedFrames& world, int passes);
 
   Case case_;

@@ -15,15 +15,15 @@
 namespace broadmark::worker {
 namespace {
 
-// What lies in shared memory as it is.
+// Types copied to shared memory as they are.
 static_assert(sizeof(Aabb) == 32 && sizeof(Pair) == 8 && sizeof(RecordedDrawing::Box) == 48 &&
               sizeof(RecordedDrawing::Line) == 28);
 static_assert(std::is_trivially_copyable_v<Aabb> && std::is_trivially_copyable_v<Pair> &&
               std::is_trivially_copyable_v<RecordedDrawing::Box> &&
               std::is_trivially_copyable_v<RecordedDrawing::Line>);
 
-/// More than any message takes; a longer one would be cut.
-constexpr std::size_t kLongestMessage = std::size_t{1} << 17;
+/// Longer than any message; longer ones would be truncated.
+constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 17;
 
 std::runtime_error systemError(const char* what) {
   return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
@@ -33,7 +33,7 @@ std::runtime_error systemError(const char* what) {
 
 ChannelEnds openChannel() {
   int ends[2];
-  // Packets keep messages apart.
+  // Packets preserve message boundaries.
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
     throw systemError("no channel to a worker process");
   }
@@ -42,7 +42,7 @@ ChannelEnds openChannel() {
 
 bool Channel::send(const Json& message) const {
   const std::string text = formatJson(message, -1);
-  if (text.size() > kLongestMessage) {
+  if (text.size() > kMaxMessageBytes) {
     throw std::runtime_error(fmt::format("a message of {} bytes is too long", text.size()));
   }
   ssize_t sent = -1;
@@ -58,7 +58,7 @@ bool Channel::wait(int milliseconds) const {
 }
 
 std::optional<Json> Channel::receive() {
-  buffer_.resize(kLongestMessage);
+  buffer_.resize(kMaxMessageBytes);
   ssize_t got = -1;
   do {
     got = ::recv(socket_.get(), buffer_.data(), buffer_.size(), 0);
@@ -106,34 +106,34 @@ void SharedMemory::requireHeld(std::uint64_t offset, std::uint64_t count,
   }
 }
 
-Json toJson(const Case& run) {
-  return {{"algorithm", run.algorithm.id},
-          {"plugin", run.algorithm.plugin},
-          {"plugin_hash", run.algorithm.plugin_build.hash},
-          {"isa", isaName(run.isa)},
-          {"threads", run.threads},
-          {"device", run.device},
-          {"parameters", run.parameters},
-          {"answer", kAnswerKinds.nameOf(run.answer)}};
+Json toJson(const Case& test_case) {
+  return {{"algorithm", test_case.algorithm.id},
+          {"plugin", test_case.algorithm.plugin},
+          {"plugin_hash", test_case.algorithm.plugin_build.hash},
+          {"isa", isaName(test_case.isa)},
+          {"threads", test_case.threads},
+          {"device", test_case.device},
+          {"parameters", test_case.parameters},
+          {"answer", kAnswerKinds.nameOf(test_case.answer)}};
 }
 
 Case caseFrom(const Json& json, const AlgorithmFinder& find) {
   const auto isa = json.at("isa").get<std::string>();
-  Case run{.algorithm =
-               find(json.at("algorithm").get<std::string>(), json.at("plugin").get<std::string>()),
-           .threads = json.at("threads").get<int>(),
-           .device = json.at("device").get<std::string>(),
-           .parameters = json.at("parameters").get<ParameterValues>()};
-  if (json.value("plugin_hash", run.algorithm.plugin_build.hash) !=
-      run.algorithm.plugin_build.hash) {
-    throw InputError(
-        fmt::format("--plugin: {}: was replaced after the run had begun", run.algorithm.plugin));
+  Case test_case{.algorithm = find(json.at("algorithm").get<std::string>(),
+                                   json.at("plugin").get<std::string>()),
+                 .threads = json.at("threads").get<int>(),
+                 .device = json.at("device").get<std::string>(),
+                 .parameters = json.at("parameters").get<ParameterValues>()};
+  if (json.value("plugin_hash", test_case.algorithm.plugin_build.hash) !=
+      test_case.algorithm.plugin_build.hash) {
+    throw InputError(fmt::format("--plugin: {}: was replaced after the run had begun",
+                                 test_case.algorithm.plugin));
   }
   const auto known = kIsas.find(isa);
   if (!known) throw UnsupportedError("there is no instruction set " + isa);
-  run.isa = *known;
-  run.answer = kAnswerKinds.find(json.at("answer").get<std::string>()).value();
-  return run;
+  test_case.isa = *known;
+  test_case.answer = kAnswerKinds.find(json.at("answer").get<std::string>()).value();
+  return test_case;
 }
 
 Json toJson(const SceneInfo& scene) {
@@ -158,7 +158,7 @@ SceneInfo sceneFrom(const Json& json) {
 
 Json writeFilter(const CollisionFilter& filter, const SharedMemory& memory, std::uint64_t offset) {
   if (filter.wantsAll()) return nullptr;
-  // Tags first: so each array begins where its items may.
+  // Tags first, for alignment: each array begins at a multiple of its item size.
   offset = memory.write(filter.tags(), offset);
   offset = memory.write(filter.worlds(), offset);
   memory.write(filter.layers(), offset);

@@ -1,35 +1,36 @@
-// What a process says to its worker process, and hears from it.
+// The protocol between a process and its worker process.
 //
-// A message is one JSON object in one packet. At first the worker says who it is:
+// A message is one JSON object in one packet. At first the worker sends its version:
 //   {"protocol": 4, "program": "0.1.0"}
-// Then it answers one call after the other, with what stands behind the arrow or with
+// Then it answers one call after the other, with the last column or with
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
-//   call        says                                              answer
+//   call        message (and shared memory)                       answer (and shared memory)
 //   case        algorithm, plugin, plugin_hash (of that file),
 //               isa, threads, device, parameters {},
 //               answer ("pairs" | "events"),
 //               memory_limit_bytes (0: none), pin                 {}
-//   start       scene {name, object_type, objects, frames, world, initialize_ns, pinned
-//               all_present}, filter (null: all pairs are wanted);
-//               shared are the boxes of frame 0, then what the
-//               filter has of tags, worlds, layers
-//   step        frame, changed: the numbers of so many bodies,    times_ns {}, pairs
-//               then their boxes, are shared
+//   start       scene {name, object_type, objects, frames,        initialize_ns, pinned
+//               world, all_present},
+//               filter (null: all pairs are wanted)
+//               shared: the boxes of frame 0, then the filter's
+//               tags, worlds, layers, if any
+//   step        frame, changed: the number of changed bodies      times_ns {}, pairs
+//               shared: their ids, then their boxes
 //   digest                                                        count, hash
-//   answer                                                        pairs: so many are shared
-//   events                                                        began, then ended: so many pairs
-//                                                                 are shared
+//   answer                                                        pairs: their number
+//                                                                 shared: the pairs
+//   events                                                        began, ended: their numbers
+//                                                                 shared: the pairs, in this order
 //   counters, setup                                               counts {}
-//   structure                                                     boxes, lines, tests: so many are
-//                                                                 shared; left_out
+//   structure                                                     boxes, lines, tests: their
+//                                                                 numbers; left_out
+//                                                                 shared: these, in this order
 //   validate                                                      broken ("": nothing)
-//   stop                                                          peak_bytes (null: not known),
-//                                                                 heap_bytes,
-//                                                                 processor {} (what is known)
+//   stop                                                          peak_bytes (null: unknown),
+//                                                                 heap_bytes, processor {}
 //
-// A side passes over keys that it does not know. A change that an older side cannot pass over
-// raises kProtocolVersion.
+// Unknown keys are ignored. A change that an older side cannot ignore raises kProtocolVersion.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +49,7 @@ inline constexpr int kProtocolVersion = 4;
 
 // The worker's descriptors.
 inline constexpr int kChannelDescriptor = 3;
-inline constexpr int kFramesDescriptor = 4;   ///< written by the process that started it
+inline constexpr int kFramesDescriptor = 4;   ///< written by the parent process
 inline constexpr int kAnswersDescriptor = 5;  ///< written by the worker
 
 /// One end of the channel.
@@ -56,12 +57,12 @@ class Channel {
  public:
   explicit Channel(FileDescriptor socket) : socket_(std::move(socket)) {}
 
-  /// Whether the other side is still there to get it.
+  /// Returns whether the other side still exists.
   [[nodiscard]] bool send(const Json& message) const;
-  /// Waits so long for a packet to arrive; forever if that is negative. Whether one has, or the
-  /// other side has gone.
+  /// Waits for a packet, up to `milliseconds`; without limit if negative. Returns true once a
+  /// packet has arrived or the other side has hung up.
   [[nodiscard]] bool wait(int milliseconds) const;
-  /// The next message; nothing once the other side has gone. Throws HostError for what is none.
+  /// The next message; nothing once the other side has gone. Throws HostError if it is malformed.
   [[nodiscard]] std::optional<Json> receive();
 
  private:
@@ -76,8 +77,8 @@ struct ChannelEnds {
 };
 ChannelEnds openChannel();
 
-/// Memory that both sides share. It is read and written by system calls and never mapped: so it is
-/// not within the memory that the worker takes.
+/// Memory shared by both sides. It is read and written by system calls and never mapped, so that it
+/// does not count as the worker's memory.
 class SharedMemory {
  public:
   explicit SharedMemory(FileDescriptor file) : file_(std::move(file)) {}
@@ -86,11 +87,11 @@ class SharedMemory {
 
   [[nodiscard]] int descriptor() const { return file_.get(); }
 
-  /// Gives the memory back.
+  /// Releases the memory.
   void clear() const;
 
   /// Writes `items` at a byte offset. Returns the offset behind them. Throws std::runtime_error
-  /// when there is no memory left.
+  /// when no memory is left.
   template <class Item>
   std::uint64_t write(std::span<const Item> items, std::uint64_t offset = 0) const {
     writeBytes(std::as_bytes(items), offset);
@@ -108,29 +109,29 @@ class SharedMemory {
  private:
   void writeBytes(std::span<const std::byte> bytes, std::uint64_t offset) const;
   void readBytes(std::span<std::byte> bytes, std::uint64_t offset) const;
-  /// Throws HostError for a claim of more than is there.
+  /// Throws HostError if the range exceeds the memory.
   void requireHeld(std::uint64_t offset, std::uint64_t count, std::size_t item_bytes) const;
 
   FileDescriptor file_;
 };
 
-/// The worker's side of the protocol, without what it does to its process: answers the calls of the
-/// other side until that hangs up. Throws HostError for what is no message.
+/// The worker's protocol loop, without changes to its process: answers calls until the other side
+/// hangs up. Throws HostError for a malformed message.
 void answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
                  const AlgorithmFinder& find);
 
 Json toJson(const Case&);
 /// Throws InputError (no such algorithm) and Json::exception.
 Case caseFrom(const Json&, const AlgorithmFinder& find);
-/// All but the filter, which is too large for a message.
+/// Without the filter, which is too large for a message.
 Json toJson(const SceneInfo&);
 SceneInfo sceneFrom(const Json&);
-/// Writes the filter's arrays from `offset` on; what there is of them.
+/// Writes the filter's arrays, if any, from `offset` on.
 Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offset);
 CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
                            std::size_t bodies);
 
-/// The values of the names in a table, as far as they are known.
+/// The known values of a table's names.
 template <class Table, class Values>
 Json namedToJson(const Table& table, const Values& values) {
   Json json = Json::object();
@@ -139,7 +140,7 @@ Json namedToJson(const Table& table, const Values& values) {
   }
   return json;
 }
-/// And back. What the other side does not tell stays as it is.
+/// The reverse. Missing values are left unchanged.
 template <class Table, class Values>
 void readNamed(const Json& json, const Table& table, Values& values) {
   for (const auto& [key, name] : table.entries) {

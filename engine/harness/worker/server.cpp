@@ -1,4 +1,4 @@
-// The worker's side: a InProcessExecutor whose calls come by messages.
+// The worker's side: an InProcessExecutor that is called by messages.
 
 #include <malloc.h>
 #include <sys/prctl.h>
@@ -22,21 +22,21 @@ namespace {
 
 using worker::SharedMemory;
 
-/// The peak of the memory that this process has had resident.
+/// Peak resident memory of this process.
 std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
 
-/// What is allocated and not freed.
+/// Allocated memory that is not freed.
 std::uint64_t heapBytes() {
   const auto heap = ::mallinfo2();
   return heap.uordblks + heap.hblkhd;
 }
 
-/// Should memory run out nonetheless, this process is to go, not the one that waits for it.
+/// Lets the OOM killer pick the worker, not its parent.
 void raiseOomScore() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
-/// What an algorithm has no use for. A crash is told of by its signal, and a dump of all that
-/// memory would fill the disc; nobody runs programs with more rights than the user's (sudo) from
-/// here.
+/// Disables what algorithms do not need. Core dumps: the parent reports the signal of a crash, and
+/// a dump of that much memory would fill the disc. Privileges: no program with more rights than the
+/// user's (sudo) is started from here.
 void dropPrivileges() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
@@ -81,8 +81,8 @@ class Server {
   }
 
   static Json failure(const char* kind, std::string text) {
-    constexpr std::size_t kLongest = 10'000;
-    text.resize(std::min(text.size(), kLongest));
+    constexpr std::size_t kMaxLength = 10'000;
+    text.resize(std::min(text.size(), kMaxLength));
     return {{"error", text}, {"kind", kind}};
   }
 
@@ -98,7 +98,7 @@ class Server {
     return *host_;
   }
 
-  /// In a pass: with an instance.
+  /// Only during a pass.
   InProcessExecutor& startedHost() {
     if (!started_) throw std::runtime_error("no pass has been started");
     return host();
@@ -109,7 +109,7 @@ class Server {
     frames_.read(boxes_, scene.objects);
     scene.filter = worker::readFilter(message.at("filter"), frames_, boxes_.size() * sizeof(Aabb),
                                       scene.objects);
-    changed_.resize(boxes_.size());  // now, as it is none of the algorithm's memory
+    changed_.resize(boxes_.size());  // outside the pass: not the algorithm's memory
     changed_boxes_.resize(boxes_.size());
     if (!measured_) peak_before_ = peakBytes();
     const Frame first{0, boxes_, std::span<const std::uint32_t>()};
@@ -119,7 +119,7 @@ class Server {
     return {{"initialize_ns", initialize_ns}, {"pinned", host().report().pinned}};
   }
 
-  /// The frame in shared memory, in this process's own.
+  /// Copies the frame from shared memory to private memory.
   Frame takeFrame(const Json& message) {
     frames_.read(changed_, message.at("changed").get<std::size_t>());
     frames_.read(changed_boxes_, changed_.size(), changed_.size() * sizeof(std::uint32_t));
@@ -130,8 +130,8 @@ class Server {
   }
 
   Json step(const Json& message) {
-    const StepResult run = startedHost().step(takeFrame(message));
-    return {{"times_ns", worker::namedToJson(kPhases, run.times)}, {"pairs", run.pairs}};
+    const StepResult result = startedHost().step(takeFrame(message));
+    return {{"times_ns", worker::namedToJson(kPhases, result.times)}, {"pairs", result.pairs}};
   }
 
   Json digest(const Json& /*message*/) {
@@ -153,7 +153,7 @@ class Server {
 
   /// Returns the offset behind them.
   std::uint64_t sharePairs(PairRuns runs, std::uint64_t offset) {
-    for (const PairRun run : runs) offset = answers_.write(run, offset);
+    for (const PairRun chunk : runs) offset = answers_.write(chunk, offset);
     return offset;
   }
 
@@ -177,7 +177,7 @@ class Server {
     if (!measured_) measure();
     started_ = false;
     host().stop();
-    // Others run while this waits for its next pass.
+    // Other workers run while this one waits for its next pass.
     LargeVector<Aabb>().swap(boxes_);
     std::vector<Aabb>().swap(changed_boxes_);
     std::vector<std::uint32_t>().swap(changed_);
@@ -186,7 +186,7 @@ class Server {
             {"processor", worker::namedToJson(kProcessorCounters, host().report().processor)}};
   }
 
-  /// Only the first pass tells: later ones use memory again that the first has freed.
+  /// Only the first pass is representative: later passes reuse freed memory.
   void measure() {
     measured_ = true;
     const auto peak = peakBytes();
@@ -209,7 +209,7 @@ class Server {
 }  // namespace
 
 void serveCase(const AlgorithmFinder& find) {
-  // Ctrl-C is for the process that started this one. When that is gone, so is the reason to go on.
+  // Ctrl-C is for the parent process. This one ends when the parent hangs up.
   std::signal(SIGINT, SIG_IGN);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   raiseOomScore();

@@ -1,4 +1,4 @@
-// This side: starts the process, talks to it, and says how it ended.
+// The parent's side: starts the process, exchanges messages with it, and reports how it ended.
 
 #include "broadmark/harness/worker_process.h"
 
@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using worker::SharedMemory;
 
-/// How long it may take to end by itself.
+/// Grace period before the process is killed.
 constexpr std::chrono::seconds kTimeToEnd{5};
 
 std::string endText(int wait_status) {
@@ -38,20 +38,20 @@ std::string endText(int wait_status) {
   return "crashed with " + what;
 }
 
-/// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, what
-/// it prints goes to our standard error. Throws InputError when it cannot be started.
+/// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, its
+/// output goes to our standard error. Throws InputError when it cannot be started.
 pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed) {
   posix_spawn_file_actions_t actions{};
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  // What a plug-in prints is not to stand among our results.
+  // Keeps a plug-in's output out of our results.
   ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
   std::vector<FileDescriptor> copies;
   int next = STDERR_FILENO + 1;
   for (const int descriptor : handed) {
-    // By way of a number beyond all of these, so that none is overwritten before its turn.
-    constexpr int kBeyond = 16;
-    copies.emplace_back(::fcntl(descriptor, F_DUPFD_CLOEXEC, kBeyond));
+    // Via a number beyond all of these, so that none is overwritten before it is copied.
+    constexpr int kFirstCopy = 16;
+    copies.emplace_back(::fcntl(descriptor, F_DUPFD_CLOEXEC, kFirstCopy));
     ::posix_spawn_file_actions_adddup2(&actions, copies.back().get(), next++);
   }
   ::posix_spawn_file_actions_addclosefrom_np(&actions, next);
@@ -69,15 +69,15 @@ pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed)
   return pid;
 }
 
-/// How often somebody is asked whether to go on waiting.
+/// How often `cancelled` is polled during a wait.
 constexpr int kPollMilliseconds = 50;
 
-/// To a process, which does not outlive it.
+/// The connection to a process; ends the process when destroyed.
 class Link {
  public:
   explicit Link(const WorkerOptions& options) : Link(options, worker::openChannel()) {}
   ~Link() {
-    // Without a channel it ends, unless it hangs.
+    // Closing the channel ends the process, unless it hangs.
     channel_.reset();
     if (alive()) wait();
   }
@@ -87,16 +87,16 @@ class Link {
   SharedMemory frames;
   SharedMemory answers;
 
-  /// Whether kill() or wait() has not seen its end.
+  /// Whether the process was not yet reaped by kill() or wait().
   [[nodiscard]] bool alive() const { return pid_ != 0; }
 
-  /// Introduces both sides, and names the case.
+  /// Exchanges versions, and sends the case.
   void begin(const Json& case_message) {
     greet();
     call(case_message, options_.begin_limit);
   }
 
-  /// The answer to a call into the algorithm. Throws what that threw, and as CaseExecutor says.
+  /// The answer to a call into the algorithm. Rethrows its exception; else throws as CaseExecutor.
   Json call(const Json& message) { return call(message, options_.hard_limit); }
 
  private:
@@ -157,7 +157,7 @@ class Link {
     wait();
   }
 
-  /// Waits for its end, and brings that about after a while. Says how it ended: "crashed with
+  /// Waits for the process to end, and kills it after a while. Returns how it ended: "crashed with
   /// SIGSEGV (Segmentation fault)".
   std::string wait() {
     const auto end = Clock::now() + kTimeToEnd;
@@ -180,8 +180,8 @@ class Link {
 
 class WorkerProcess final : public CaseExecutor {
  public:
-  WorkerProcess(Case run, WorkerOptions options)
-      : case_(std::move(run)), options_(std::move(options)) {}
+  WorkerProcess(Case test_case, WorkerOptions options)
+      : case_(std::move(test_case)), options_(std::move(options)) {}
 
   std::int64_t start(const SceneInfo& scene, const Frame& first) override {
     report_.processor = {};
@@ -199,10 +199,10 @@ class WorkerProcess final : public CaseExecutor {
     changed_boxes_.clear();
     for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
     link_->frames.write(std::span<const Aabb>(changed_boxes_), link_->frames.write(*frame.changed));
-    const Json run =
+    const Json answer =
         link_->call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
-    StepResult result{.pairs = run.at("pairs").get<std::uint64_t>()};
-    worker::readNamed(run.at("times_ns"), kPhases, result.times);
+    StepResult result{.pairs = answer.at("pairs").get<std::uint64_t>()};
+    worker::readNamed(answer.at("times_ns"), kPhases, result.times);
     return result;
   }
 
@@ -260,7 +260,7 @@ class WorkerProcess final : public CaseExecutor {
     std::uint64_t end = boxes.size() * sizeof(RecordedDrawing::Box);
     link_->answers.read(lines, drawn.at("lines").get<std::size_t>(), end);
     end += lines.size() * sizeof(RecordedDrawing::Line);
-    link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
+    link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // not in older versions
     return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
             std::move(tests)};
   }
@@ -268,7 +268,7 @@ class WorkerProcess final : public CaseExecutor {
  private:
   [[nodiscard]] bool isOpen() const { return link_ && link_->alive(); }
 
-  /// Starts the process, if none runs.
+  /// Starts the process unless it runs.
   void open() {
     if (isOpen()) return;
     link_ = std::make_unique<Link>(options_);
@@ -279,14 +279,14 @@ class WorkerProcess final : public CaseExecutor {
     link_->begin(message);
   }
 
-  /// A call that says nothing more.
+  /// A call without arguments.
   Json call(const char* name) { return link_->call({{"call", name}}); }
 
   Case case_;
   WorkerOptions options_;
   std::unique_ptr<Link> link_;
   std::vector<Aabb> changed_boxes_;
-  std::vector<Pair> answer_;  ///< of events: those that began
+  std::vector<Pair> answer_;  ///< for events: the begun pairs
   std::vector<Pair> ended_;
   PairRun answer_run_;
   PairRun ended_run_;
@@ -294,8 +294,8 @@ class WorkerProcess final : public CaseExecutor {
 
 }  // namespace
 
-std::unique_ptr<CaseExecutor> makeWorkerProcess(Case run, WorkerOptions options) {
-  return std::make_unique<WorkerProcess>(std::move(run), std::move(options));
+std::unique_ptr<CaseExecutor> makeWorkerProcess(Case test_case, WorkerOptions options) {
+  return std::make_unique<WorkerProcess>(std::move(test_case), std::move(options));
 }
 
 }  // namespace broadmark

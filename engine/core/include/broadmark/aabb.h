@@ -1,4 +1,4 @@
-// Axis-aligned bounding boxes and what it means that two overlap.
+// Axis-aligned bounding boxes, and the definition of overlap.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct alignas(16) Aabb {
 };
 static_assert(sizeof(Aabb) == 32);
 
-/// Equal to the bit: unlike ==, tells -0 from 0, so that what is recorded comes back as it was.
+/// Bitwise equality: unlike ==, distinguishes -0 from 0, so that recordings round-trip exactly.
 constexpr bool sameBits(const Aabb& a, const Aabb& b) {
   using Bits = std::array<std::uint64_t, 4>;
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
@@ -28,7 +28,7 @@ constexpr bool sameBits(const Aabb& a, const Aabb& b) {
 
 /// Closed intersection on all three axes, in 32-bit floats: touching counts.
 constexpr bool overlaps(const Aabb& a, const Aabb& b) {
-  // `&`, not `&&`: six cheap comparisons beat a badly predicted branch.
+  // `&`, not `&&`: six cheap comparisons beat a mispredicted branch.
   const auto in_order = [](float low, float high) -> int { return low <= high; };
   return (in_order(a.min[0], b.max[0]) & in_order(b.min[0], a.max[0]) &
           in_order(a.min[1], b.max[1]) & in_order(b.min[1], a.max[1]) &
@@ -43,12 +43,12 @@ inline constexpr Aabb kEmptyBox = [] {
 
 constexpr bool isEmpty(const Aabb& box) { return box.min[0] > box.max[0]; }
 
-/// In double, as two huge coordinates may add up to more than a float holds.
+/// In double: the sum of two huge coordinates may overflow a float.
 constexpr double centreOf(const Aabb& box, std::size_t axis) {
   return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
 }
 
-/// In double likewise; 0 for that of a body that is absent.
+/// In double, for the same reason; 0 for an absent body.
 constexpr double longestEdge(const Aabb& box) {
   double longest = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// How an algorithm is listed: everything that help, tables, command line and tests derive from.
+// An algorithm's description, from which help, tables, command line and tests are derived.
 #pragma once
 
 #include <cstdint>
@@ -11,50 +11,50 @@
 
 namespace broadmark {
 
-/// How an algorithm takes part in worlds in which bodies come and go, or not all pairs are wanted.
+/// Support for worlds in which bodies appear and disappear, or some pairs are unwanted.
 enum class ChangingWorlds {
-  /// Not at all: such worlds are not for it.
+  /// None: such worlds are skipped.
   unknown,
-  /// Each frame may have another number of bodies, and is looked at as a whole: bodies that are
-  /// absent are left out for it, and pairs that are not wanted are taken out of its answer.
+  /// Frames are independent and may differ in the number of bodies: an adapter removes absent
+  /// bodies from the frames and unwanted pairs from the answers.
   compacted,
-  /// By itself.
+  /// By the algorithm itself.
   native
 };
 
-/// What holds for every instance of an algorithm: runs, lists and tests derive from it.
+/// Properties of every instance of an algorithm: runs, lists and tests derive from them.
 struct AlgorithmTraits {
-  bool parallel = false;     ///< uses as many threads as it is given
-  bool vectorised = false;   ///< heeds the instruction set
-  bool on_device = false;    ///< runs on a compute device, whose driver starts threads itself
-  bool incremental = false;  ///< keeps pairs or a structure from frame to frame
-  bool events = false;       ///< knows by itself which pairs begin and end: BroadPhase::events()
+  bool parallel = false;     ///< uses all threads it is given
+  bool vectorised = false;   ///< has per-ISA kernels
+  bool on_device = false;    ///< on a compute device with a driver that starts threads itself
+  bool incremental = false;  ///< retains pairs or a structure between frames
+  bool events = false;       ///< finds begun and ended pairs itself: BroadPhase::events()
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
-  /// A library that it calls allocates in a steady state; the algorithm cannot prevent that.
+  /// A library that it calls allocates in a steady state, unavoidably.
   bool library_allocates = false;
-  /// A library that it calls keeps memory for every instance: no leak of the algorithm's.
+  /// A library that it calls retains memory for every instance: no leak of the algorithm's.
   bool library_leaks = false;
-  /// What it makes of bodies that are absent, and of pairs that are not wanted.
+  /// Treatment of absent bodies and of unwanted pairs.
   ChangingWorlds changing_worlds = ChangingWorlds::unknown;
-  /// Each of several worlds at one place has an instance of its own, however small they are: for
-  /// one that pays for bodies at the same place, whatever their worlds, or for those far away.
-  /// Without it a `compacted` one has small worlds side by side in one instance, unless it is on a
-  /// device, where that goes for all worlds; a `native` one gets all bodies as they are.
+  /// Each of several worlds at one place has its own instance, however small: for an algorithm with
+  /// a cost for bodies of other worlds at the same place, or for distant bodies. Without it a
+  /// `compacted` algorithm gets small worlds side by side in one instance (on a device, all
+  /// worlds); a `native` one gets all bodies unmoved.
   bool instance_per_world = false;
-  /// Small are worlds of fewer bodies than this: from here on instances of their own are quicker.
+  /// Worlds with fewer bodies than this are small: from here on separate instances are quicker.
   std::size_t side_by_side_below = 100;
-  /// Largest number of bodies it can handle.
+  /// Largest number of bodies supported.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
-  /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Between two
-  /// calls others may have used it.
+  /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Other code
+  /// may use it between two calls.
   std::string exclusive = {};
-  /// Parameter values that select code which the default values hardly ever reach: tests run each
+  /// Parameter values that reach code which the default values hardly ever reach: tests run each
   /// configuration with these, too.
   ParameterValues rare_parameters = {};
 };
 
-/// What the paper's Table 1 tells of an algorithm, beyond its traits.
+/// A row of the paper's Table 1, beyond the traits.
 struct AlgorithmDescription {
   std::string principle;      ///< "brute force", "sorting", "grid", "tree"
   std::string optimisations;  ///< besides SIMD, threads and devices; "": none
@@ -63,11 +63,11 @@ struct AlgorithmDescription {
   std::string source;         ///< paper and section, or library
 };
 
-/// A library that an algorithm comes from.
+/// How the library that an algorithm comes from was built.
 struct PluginBuild {
   std::string hash = {};     ///< of the file
-  std::string flags = {};    ///< compiler and options, as far as it tells; "": it does not
-  bool unoptimised = false;  ///< it says so
+  std::string flags = {};    ///< compiler and options; "": not reported
+  bool unoptimised = false;  ///< if reported
 };
 
 /// One algorithm variant.

@@ -31,8 +31,8 @@ class BoxArrays {
     }
   }
 
-  /// Makes room for `size` boxes (kept when it suffices) and writes the padding behind them. The
-  /// boxes themselves are left as they are.
+  /// Makes room for `size` boxes and writes the padding behind them. Keeps the memory if it
+  /// suffices; does not initialise the boxes.
   void resize(std::size_t size);
   /// Becomes a transposed copy of `boxes`.
   void assign(std::span<const Aabb> boxes);

@@ -1,4 +1,4 @@
-// The central interface: a broad-phase algorithm, and the layers above it for the usual cases.
+// The central interface: a broad-phase algorithm, and helper base classes for common cases.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace broadmark {
 
-/// Shows one number and what it counts: "swaps", "moves", "skipped subtrees".
+/// Receives one counter: its name ("swaps", "moves", "skipped subtrees") and value.
 using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
 
-/// How much of a frame went into copying to and from a compute device, in nanoseconds.
+/// Time spent on copies to and from a compute device in a frame, in nanoseconds.
 struct TransferTimes {
   std::int64_t upload_ns = 0;
   std::int64_t download_ns = 0;
@@ -29,11 +29,11 @@ struct TransferTimes {
 ///
 /// Per run: setParameters, initialize, then for every frame 1…F the four phases in the order below,
 /// each timed, then overlaps(). An instance is run once, over one scene, from one thread; it may
-/// use the workers of its Execution. A steady state allocates nothing.
+/// use the workers of its ExecutionContext. A steady state allocates nothing.
 ///
-/// One that knows by itself which pairs begin and end (traits.events) may be told so, by
-/// reportEvents(), before initialize: then its answer is events(), and nobody asks for overlaps().
-/// For all others events are made of the answers of two frames, as part of phase 4.
+/// An algorithm that finds begun and ended pairs itself (traits.events) may get a reportEvents()
+/// call before initialize: then its answer is events(), and overlaps() is not called. For all
+/// others events are derived from the answers of two frames, as part of phase 4.
 class BroadPhase : public Parametrised {
  public:
   /// 0: exact. Otherwise conservative: an extra pair is allowed when the two boxes overlap once
@@ -45,47 +45,46 @@ class BroadPhase : public Parametrised {
   virtual void initialize(const SceneInfo& scene, const Frame& first,
                           ExecutionContext& execution) = 0;
 
-  /// Phase 1: takes over the new boxes. The frame is valid only until this returns.
+  /// Phase 1: copies the new boxes. The frame is valid only until this returns.
   virtual void updateObjects(const Frame& frame) = 0;
-  /// Phase 2: drops what is left of the last frame's answer.
+  /// Phase 2: drops the last frame's answer.
   virtual void cleanCache() {}
   /// Phase 3: brings the acceleration structure up to date.
   virtual void updateStructures() {}
-  /// Phase 4: finds the pairs, turning a library's own pairs into ours included.
+  /// Phase 4: finds the pairs, including the conversion of a library's own pairs.
   virtual void searchOverlaps() = 0;
 
   /// The answer for this frame: every overlapping pair once, a < b, in any order. Owned by the
   /// algorithm; valid until the next updateObjects.
   [[nodiscard]] virtual PairRuns overlaps() const = 0;
 
-  /// Called before initialize(), if traits.events: the answer is to be events().
+  /// Called before initialize(), only if traits.events: the answer will be events().
   virtual void reportEvents() {}
-  /// The events of this frame, in any order; after initialize() those of the initial pose, all of
-  /// whose pairs began. A conservative algorithm's are those of its own set of pairs. Owned by the
-  /// algorithm; valid until the next updateObjects.
+  /// The events of this frame, in any order; after initialize() a begin event for each pair of the
+  /// initial pose. A conservative algorithm reports the events of its own set of pairs. Owned by
+  /// the algorithm; valid until the next updateObjects.
   [[nodiscard]] virtual PairEvents events() const { return {}; }
 
-  /// Copying within the phases of the last frame (algorithms on a compute device).
+  /// Copy times within the phases of the last frame (algorithms on a compute device).
   [[nodiscard]] virtual TransferTimes transfers() const { return {}; }
 
-  /// Draws the acceleration structure as it is now.
+  /// Draws the present acceleration structure.
   virtual void drawStructure(DebugDraw&) const {}
-  /// Shows the work counters of the last frame (incremental algorithms).
+  /// Visits the work counters of the last frame (incremental algorithms).
   virtual void visitCounters(const CounterVisitor&) const {}
-  /// Shows what was counted once, in initialize(): the time to build kernels, for instance.
+  /// Visits what was counted once, in initialize(): the time to build kernels, for instance.
   virtual void visitSetup(const CounterVisitor&) const {}
-  /// Checks the inner invariants: "" or what is broken. For tests; may be slow.
+  /// Checks the internal invariants: "" or the broken one. For tests; may be slow.
   [[nodiscard]] virtual std::string validate() const { return {}; }
 };
 
-// Three helper layers. Our families use them, too, except those that keep their pairs from frame to
-// frame (KD, Tracy) and those that get all pairs at once from a compute device: for these, pair
-// buffers that are emptied every frame are of no use, and they derive from BroadPhase.
+// Three helper layers. The families here use them, too, except those that retain pairs between
+// frames (KD, Tracy) and those that get all pairs at once from a compute device: these have no use
+// for pair buffers that are emptied every frame, and derive from BroadPhase.
 
-/// Layer 1: keeps the execution and one pair buffer per worker, and answers with them. Phases 2 and
-/// 4 are its own: an algorithm adds pairs in findPairs(), to buffers that are empty, and they are
-/// the answer. An override of initialize() calls this one first; if it does not, the first search
-/// throws std::logic_error.
+/// Layer 1: holds the execution context and one pair buffer per worker. Implements phases 2 and 4:
+/// an algorithm adds pairs in findPairs(), to empty buffers, which become the answer. An override
+/// of initialize() calls this one first; if it does not, the first search throws std::logic_error.
 class PairBroadPhase : public BroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
@@ -108,7 +107,7 @@ class PairBroadPhase : public BroadPhase {
   std::vector<PairRun> runs_;
 };
 
-/// Layer 2: also keeps a copy of the boxes.
+/// Layer 2: also holds a copy of the boxes.
 class BoxBroadPhase : public PairBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
@@ -121,7 +120,7 @@ class BoxBroadPhase : public PairBroadPhase {
   std::vector<Aabb> boxes_;
 };
 
-/// Layer 2 for SIMD: keeps the copy as six arrays (structure of arrays).
+/// Layer 2 for SIMD: the copy is stored as six arrays (structure of arrays).
 class SimdBroadPhase : public PairBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;

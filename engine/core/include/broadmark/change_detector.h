@@ -1,4 +1,4 @@
-// Which bodies' boxes differ from those of the frame before.
+// Finds the bodies with boxes that differ from the frame before.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace broadmark {
 
-/// Completes frames whose source does not know what changed. Keeps a copy of the boxes. A steady
-/// state allocates nothing.
+/// Fills in Frame::changed for sources that do not provide it. Retains a copy of the boxes. A
+/// steady state allocates nothing.
 class ChangeDetector {
  public:
-  /// The frame, with what changed since the last call for a frame of this source, or nothing for
-  /// its frame 0. Valid until the next call.
+  /// Returns the frame with the bodies changed since the last call for this source; none in frame
+  /// 0. Valid until the next call.
   Frame complete(const Frame& frame) {
     if (frame.changed) return frame;
     changed_.clear();

@@ -1,4 +1,4 @@
-// Which pairs of bodies are wanted at all, wherever they are.
+// Which pairs of bodies are wanted, independently of their positions.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace broadmark {
 
-/// Which layers collide with which: bit b of row a. Symmetric.
+/// Which layers collide: bit b of row a. Symmetric.
 class LayerMatrix {
  public:
   static constexpr std::size_t kLayers = 32;
 
-  /// No layer collides with any.
+  /// No layers collide.
   constexpr LayerMatrix() = default;
-  /// Every layer collides with every one.
+  /// All layers collide.
   static LayerMatrix all();
 
   LayerMatrix& set(std::size_t a, std::size_t b, bool collide = true);
@@ -40,42 +40,42 @@ struct BodyGroups {
   static constexpr Tags kNoTags = {kNoTag, kNoTag, kNoTag};
 
   std::uint8_t layer = 0;   ///< below LayerMatrix::kLayers
-  std::uint32_t world = 0;  ///< only bodies of one world meet
-  Tags tags = kNoTags;      ///< bodies that share a tag do not meet: a mesh's vertex, a ragdoll
+  std::uint32_t world = 0;  ///< only bodies of the same world collide
+  Tags tags = kNoTags;      ///< bodies that share a tag do not collide: a mesh's vertex, a ragdoll
 
   friend bool operator==(const BodyGroups&, const BodyGroups&) = default;
 };
 
 /// The predicate wanted(a, b) over all bodies of a scene. By default all pairs are wanted. Cheap to
-/// copy: copies share what they hold, which never changes.
+/// copy: copies share immutable data.
 class CollisionFilter {
  public:
   CollisionFilter() = default;
-  /// A body for each in `bodies`. Throws std::invalid_argument for a layer that does not exist.
+  /// One body per entry of `bodies`. Throws std::invalid_argument for a layer that does not exist.
   CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix);
 
   /// Whether the overlap of these two bodies counts; symmetric, a != b.
   [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
     return data_ == nullptr || data_->wanted(a, b);
   }
-  /// Whether every pair is wanted, for certain.
+  /// True if every pair is wanted; may be false even so.
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
 
-  /// The same for copies of one filter, and for no other while it exists.
+  /// An identity: equal for copies of one filter, and unique while it exists.
   [[nodiscard]] const void* address() const { return data_.get(); }
 
   [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
     return data_ == nullptr || data_->layers.empty() ? 0 : data_->layers[body];
   }
-  /// As given; default values beyond what was given.
+  /// As given; default values for bodies beyond.
   [[nodiscard]] BodyGroups groupsOf(std::uint32_t body) const;
   [[nodiscard]] LayerMatrix matrix() const;
-  /// One per body; empty where all are in layer 0, in world 0, without tags.
+  /// One per body; empty where all bodies are in layer 0, in world 0, without tags.
   [[nodiscard]] std::span<const std::uint8_t> layers() const;
   [[nodiscard]] std::span<const std::uint32_t> worlds() const;
   [[nodiscard]] std::span<const BodyGroups::Tags> tags() const;
 
-  /// The filter of some of the bodies, in this order.
+  /// The filter of a subset of the bodies, in this order.
   [[nodiscard]] CollisionFilter of(std::span<const std::uint32_t> bodies) const;
 
   friend bool operator==(const CollisionFilter& a, const CollisionFilter& b);

@@ -1,4 +1,4 @@
-// The compiler of the file that includes this, as text.
+// The compiler of the including file, as text.
 #pragma once
 
 #if defined(__clang__)

@@ -1,4 +1,4 @@
-// What an algorithm draws of its own structure: grid cells, tree nodes, split planes, sort axes.
+// Debug drawing of an algorithm's structure: grid cells, tree nodes, split planes, sort axes.
 #pragma once
 
 #include <array>
@@ -8,10 +8,10 @@
 
 namespace broadmark {
 
-/// What a drawn box or line is; the palette (assets/palette.txt) has a colour for each.
+/// The role of a drawn box or line; the palette (assets/palette.txt) has a colour for each.
 enum class StructureRole {
   cell,          ///< or a node
-  cell_part,     ///< of a cell that is cut
+  cell_part,     ///< part of a divided cell
   split,         ///< a split plane or a sort axis
   best_split,    ///< the chosen one of several
   moving_node,   ///< of bodies that move
@@ -27,14 +27,14 @@ class DebugDraw {
   virtual void box(const Aabb&, StructureRole, int level) = 0;
   virtual void line(const std::array<float, 3>& from, const std::array<float, 3>& to,
                     StructureRole) = 0;
-  /// A cell that holds so many bodies, more than none. What shows how crowded cells are gives it
-  /// the colour of a scale instead.
+  /// A cell with `population` bodies, more than 0. Views of the cells' occupancy colour it by a
+  /// scale instead.
   virtual void cell(const Aabb& bounds, int level, std::uint32_t /*population*/) {
     box(bounds, StructureRole::cell, level);
   }
-  /// In how many tests of two boxes a body took part in the last frame; calls for a body add up. An
-  /// algorithm that tells it of one body tells it of all, also of those with none, and counts as it
-  /// draws: nothing that is timed should take longer for it.
+  /// The number of box tests with a body in the last frame; calls for a body add up. An algorithm
+  /// either reports all bodies, also those with no tests, or none. It counts while it draws, so
+  /// that timed code does no extra work.
   virtual void tests(std::uint32_t /*body*/, std::uint32_t /*count*/) {}
 };
 

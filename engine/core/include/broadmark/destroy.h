@@ -1,4 +1,4 @@
-// Owning what a C library makes.
+// Ownership of objects made by a C library.
 #pragma once
 
 namespace broadmark {

@@ -19,7 +19,7 @@
 namespace broadmark {
 
 enum class Isa { scalar, sse2, neon, avx2, avx512 };
-/// All of them, the narrowest first.
+/// All instruction sets, narrowest first.
 inline constexpr NameTable kIsas{{NamedValue{Isa::scalar, "scalar"},
                                   {Isa::sse2, "sse2"},
                                   {Isa::neon, "neon"},
@@ -27,17 +27,17 @@ inline constexpr NameTable kIsas{{NamedValue{Isa::scalar, "scalar"},
                                   {Isa::avx512, "avx512"}}};
 constexpr std::string_view isaName(Isa isa) { return kIsas.nameOf(isa); }
 
-/// Whether this processor (and system) can run it.
+/// Whether this processor (and system) supports it.
 bool isaSupported(Isa);
-/// Those that it can, the narrowest first.
+/// The supported instruction sets, narrowest first.
 std::vector<Isa> supportedIsas();
-/// The widest instruction set that this processor can run.
+/// The widest supported instruction set.
 Isa bestIsa();
 
 /// Exactly `size` workers, the caller being worker 0. A benchmark wants a fixed number of threads
-/// with fixed shares (same answer for the same count, nothing stolen, nothing allocated per call);
-/// that, and a clean ThreadSanitizer, is why this is not a task scheduler. Where there are cores
-/// enough, no worker runs on that of the caller.
+/// with fixed shares (same answer for the same count, no stealing, no allocation per call); that,
+/// and a clean ThreadSanitizer, is why this is not a task scheduler. Given enough cores, no worker
+/// runs on the caller's.
 class ThreadTeam {
  public:
   explicit ThreadTeam(int size);
@@ -47,12 +47,12 @@ class ThreadTeam {
 
   [[nodiscard]] int size() const { return static_cast<int>(threads_.size()) + 1; }
 
-  /// Binds worker i, the caller being worker 0, to the core `cores[i]`. Whether the system allowed
-  /// it; if not, all workers may use the cores `usable`.
+  /// Binds worker i, the caller being worker 0, to the core `cores[i]`. Returns whether the system
+  /// allowed it; if not, all workers may use the cores `usable`.
   bool pin(std::span<const int> cores, std::span<const int> usable);
 
-  /// Wakes the workers, as there will be work for them within half a millisecond: so long they wait
-  /// awake. To wake up takes one that sleeps a tenth of that, and far more in a virtual machine.
+  /// Wakes the workers ahead of work expected within half a millisecond; they spin that long. A
+  /// wake-up takes a tenth of that, and far more in a virtual machine.
   void wake();
 
   /// Calls work(worker) once for each worker, in parallel, and returns when all are done. The first
@@ -64,7 +64,7 @@ class ThreadTeam {
            const_cast<void*>(static_cast<const void*>(std::addressof(work)))});
   }
 
-  /// Calls work(worker, range) likewise, for the worker's share of `count` things.
+  /// Calls work(worker, range) on each worker, with its share of `count` items, as above.
   template <class Work>
   void run(std::size_t count, Work&& work) {
     run([&](int worker) { work(worker, share(count, size(), worker)); });
@@ -84,29 +84,29 @@ class ThreadTeam {
 
   int spins_;  ///< of a waiting worker, before it sleeps
   Job job_;
-  /// Twice the jobs there have been; one more where workers were woken for the next one.
+  /// Twice the number of jobs so far; plus one after wake().
   std::atomic<unsigned> generation_{0};
   std::atomic<int> busy_{0};
   std::atomic<bool> stopping_{false};
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::vector<std::thread> threads_;
-  std::vector<int> shared_cores_;  ///< those of all workers, if they are enough and none is pinned
-  int callers_core_ = -1;          ///< from which the others are kept away
+  std::vector<int> shared_cores_;  ///< for all workers, if there are enough and none is pinned
+  int callers_core_ = -1;          ///< avoided by the other workers
 };
 
-/// Something costly that all instances under one Execution share, such as a device's context.
+/// A costly resource shared by all instances of an ExecutionContext, such as a device's context.
 class SharedResource {
  public:
   virtual ~SharedResource() = default;
 };
 
-/// What the runner gives to an algorithm. Outlives the algorithm's instance.
+/// The resources that the runner gives to an algorithm. Outlives the algorithm's instance.
 class ExecutionContext {
  public:
   ExecutionContext(int threads, Isa isa, std::string device = {})
       : isa_(isa), device_(std::move(device)), team_(threads) {}
-  /// Ends the latest resource first: it may be made from earlier ones.
+  /// Destroys the latest resource first: it may depend on earlier ones.
   ~ExecutionContext() {
     while (!resources_.empty()) resources_.pop_back();
   }
@@ -116,10 +116,10 @@ class ExecutionContext {
   [[nodiscard]] Isa isa() const { return isa_; }
   [[nodiscard]] int threads() const { return team_.size(); }
   ThreadTeam& team() { return team_; }
-  /// Which compute device is wanted: its number or part of its name; "" for the first.
+  /// The requested compute device: its number or part of its name; "" for the first.
   [[nodiscard]] const std::string& device() const { return device_; }
 
-  /// The resource of that type, made from this execution where no instance needed it before.
+  /// The resource of that type, made at first use.
   template <std::derived_from<SharedResource> Resource>
   Resource& shared() {
     for (const auto& resource : resources_) {

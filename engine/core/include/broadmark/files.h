@@ -1,5 +1,5 @@
 // Files: owned descriptors, whole reads, writes that never leave a half-written file behind, and
-// where they may go.
+// the write sandbox.
 #pragma once
 
 #include <chrono>
@@ -31,17 +31,17 @@ class FileDescriptor {
 
 /// Opens a regular file for reading. Throws InputError.
 FileDescriptor openForReading(const std::filesystem::path& path);
-/// An unnamed file in the temporary directory, to write and read; it vanishes with its descriptor.
-/// Throws InputError.
+/// An unnamed file in the temporary directory, for reading and writing; it is deleted with its
+/// descriptor. Throws InputError.
 FileDescriptor unnamedFile();
 /// Reads a whole text file of at most `limit_bytes`. Throws InputError.
 std::string readTextFile(const std::filesystem::path& path,
                          std::uint64_t limit_bytes = std::uint64_t{1} << 30);
 
-/// A file that appears under its name only when it is whole: written to `NAME.part` beside it, on
-/// the disc, then renamed; after commit() it is there even if the power fails. Two writers of the
-/// same name exclude each other by a lock. Throws InputError naming the path on every failure (no
-/// such directory, no permission, disc full).
+/// A file that appears under its name only when complete: written to `NAME.part` beside it, synced,
+/// then renamed; after commit() it survives a power failure. A lock excludes other writers of the
+/// same name. Throws InputError with the path on every failure (no such directory, no permission,
+/// disc full).
 class AtomicFile {
  public:
   /// `patience`: how long to wait for another writer of the same name.
@@ -54,7 +54,7 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
   void commit();
-  /// The same, and hands over the file: what is written to it is appended, and its lock holds on.
+  /// Commits and hands over the open file for appending; its lock is still held.
   FileDescriptor commitAndKeep();
 
  private:
@@ -62,19 +62,19 @@ class AtomicFile {
   std::filesystem::path partial_;
   FileDescriptor file_;
   std::uint64_t written_ = 0;
-  std::uint64_t handed_over_ = 0;  ///< of those bytes, what the system has been asked to store
+  std::uint64_t handed_over_ = 0;  ///< bytes that the system was already asked to store
   bool committed_ = false;
 };
 
-/// A file that grows part by part: each is on the disc when append() returns. The first one takes
-/// the place of what the file held before, at once. Writers of one file exclude each other by a
-/// lock. Throws InputError naming the path.
+/// A file that grows part by part: each is on the disc when append() returns. The first part
+/// atomically replaces the previous contents. A lock excludes other writers. Throws InputError with
+/// the path.
 class AppendedFile {
  public:
   explicit AppendedFile(std::filesystem::path path);
-  /// Goes on with an open descriptor, a pipe perhaps, which is neither locked nor emptied.
+  /// Appends to an open descriptor, a pipe perhaps, which is neither locked nor emptied.
   AppendedFile(FileDescriptor file, std::filesystem::path path);
-  /// Removes a file that it has made and nobody has appended to.
+  /// Removes a file that it created if nothing was appended.
   ~AppendedFile();
   AppendedFile(const AppendedFile&) = delete;
   AppendedFile& operator=(const AppendedFile&) = delete;
@@ -83,32 +83,32 @@ class AppendedFile {
 
  private:
   std::filesystem::path path_;
-  bool made_ = false;  ///< there was none before
+  bool made_ = false;  ///< the file did not exist before
   FileDescriptor file_;
   bool begun_ = false;   ///< something was appended
-  bool stored_ = false;  ///< lies on a disc
+  bool stored_ = false;  ///< on a disc
   std::uint64_t size_ = 0;
 };
 
-/// Makes sure that a file's or a folder's name is on the disc. Throws InputError.
+/// Syncs the directory entry of a file or folder. Throws InputError.
 void syncName(const std::filesystem::path& path);
 
-/// Writes a whole text file atomically; waits a moment for another writer of it.
+/// Writes a whole text file atomically; waits a moment for another writer of the file.
 void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
-/// Reads `bytes` from a byte offset on. Returns how many there were: fewer at the end of the file,
-/// or, with errno set, if no more could be read.
+/// Reads `bytes` at a byte offset. Returns the number read: fewer at the end of the file, or, with
+/// errno set, after a failure.
 std::size_t readAll(int fd, std::span<std::byte> bytes, std::uint64_t offset);
 
-/// Writes all bytes to a descriptor; `path` is named in errors.
+/// Writes all bytes to a descriptor; errors name `path`.
 void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-/// What a file from somebody else may name to be written: throws InputError unless `path` lies
+/// Restricts the output paths that a foreign file may name: throws InputError unless `path` lies
 /// below `folder`, also when its links are followed, and no part of it there is hidden, as
 /// `.bashrc` is.
 void requireBelow(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// While it lives, this process writes only what fulfils requireBelow(). There is at most one.
+/// While it exists, this process writes only paths that pass requireBelow(). At most one exists.
 class WriteSandbox {
  public:
   explicit WriteSandbox(const std::filesystem::path& folder);
@@ -117,7 +117,7 @@ class WriteSandbox {
   WriteSandbox& operator=(const WriteSandbox&) = delete;
 };
 
-/// Whether there is one: an untrusted file decides what this process does.
+/// True while an untrusted file controls this process.
 bool isSandboxed();
 
 /// Throws InputError for a path outside the sandbox. AtomicFile and AppendedFile call it.

@@ -1,4 +1,4 @@
-// What an algorithm gets to see: a scene, frame after frame.
+// The input of an algorithm: a scene, frame after frame.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@
 
 namespace broadmark {
 
-/// Longest name of a scene or an object type, in characters: what a recording's header holds.
-inline constexpr std::size_t kLongestName = 127;
+/// Longest name of a scene or an object type, in characters: the capacity of a recording's header.
+inline constexpr std::size_t kMaxNameLength = 127;
 
-/// What is known of a scene before its first frame: a recording's header. A body's id is a slot
-/// below `objects`; in each frame it is present or absent.
+/// Properties of a scene before its first frame: a recording's header. A body's id is a slot below
+/// `objects`; in each frame it is present or absent.
 struct SceneInfo {
-  std::string name;         ///< "FreeFall"; printable ASCII, at most kLongestName characters
-  std::string object_type;  ///< "Cubes"; likewise
+  std::string name;         ///< "FreeFall"; printable ASCII, at most kMaxNameLength characters
+  std::string object_type;  ///< "Cubes"; with the same limits
   std::uint32_t objects = 0;
-  std::uint32_t frames = 0;  ///< the initial pose not counted
+  std::uint32_t frames = 0;  ///< without the initial pose
   Aabb world = {};           ///< bodies may poke out a little
   bool all_present = true;   ///< no body is ever absent
   CollisionFilter filter = {};
@@ -36,17 +36,17 @@ struct Frame {
   std::uint32_t index = 0;      ///< 0 is the initial pose, 1…F are the frames that count
   std::span<const Aabb> boxes;  ///< by body id; kEmptyBox: absent
   /// The bodies that moved, appeared or vanished since frame `index` - 1, whichever frame was read
-  /// last, ascending: those whose boxes differ by a bit. Nothing when the source does not know: an
-  /// algorithm always gets them, found out before the clock starts. A source knows in all of its
-  /// frames or in none; in frame 0 there are none.
+  /// last, ascending: the boxes differ in a bit. Nothing if the source does not know; it knows in
+  /// all frames or in none. Algorithms always get them, detected before the clock starts. Empty in
+  /// frame 0.
   std::optional<std::span<const std::uint32_t>> changed = {};
 
   /// The ids of the bodies that are present, ascending.
   [[nodiscard]] std::vector<std::uint32_t> presentBodies() const;
 };
 
-/// Where frames come from, one after the other: a recording, or a live simulation. Who runs a case
-/// does not know which.
+/// A sequential source of frames: a recording, or a live simulation. The runner of a case does not
+/// distinguish them.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -60,23 +60,23 @@ class FrameSource {
   virtual std::optional<Frame> next() = 0;
 };
 
-/// Frames by their number, in any order: a recording, or frames held in memory.
+/// Frames by index, in any order: a recording, or frames held in memory.
 class IndexedFrames : public FrameSource {
  public:
-  /// Frame `index`, from 0, the initial pose, to scene().frames; next() goes on from there. Valid
+  /// Frame `index`, from 0, the initial pose, to scene().frames; next() continues from there. Valid
   /// until the next call. Throws InputError when there is no such frame.
   Frame at(std::uint32_t index);
 
   Frame rewind() final { return at(0); }
   std::optional<Frame> next() final;
 
-  /// What stands for it in messages.
+  /// Its name in messages.
   [[nodiscard]] virtual const std::string& name() const { return scene().name; }
 
  protected:
   /// The boxes of frame `index`, which exists.
   virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
-  /// What changed in the frame that was read last, if this knows: Frame::changed.
+  /// The changes of the frame that was read last, as Frame::changed.
   [[nodiscard]] virtual std::optional<std::span<const std::uint32_t>> changed() const { return {}; }
 
  private:

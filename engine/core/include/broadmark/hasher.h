@@ -1,4 +1,4 @@
-// The hash by which recordings, what they are made from, and frames are told apart.
+// The hash that identifies recordings, their sources, and frames.
 #pragma once
 
 #include <compare>
@@ -10,7 +10,7 @@
 
 namespace broadmark {
 
-/// 128 bits that stand for some bytes.
+/// A 128-bit hash.
 struct HashValue {
   std::uint64_t low = 0;
   std::uint64_t high = 0;
@@ -18,7 +18,7 @@ struct HashValue {
   friend auto operator<=>(const HashValue&, const HashValue&) = default;
 };
 
-/// XXH3-128, fed piece by piece.
+/// XXH3-128, incremental.
 class Hasher {
  public:
   Hasher();
@@ -27,9 +27,9 @@ class Hasher {
   Hasher& operator=(Hasher&&) noexcept;
 
   void add(std::span<const std::byte> bytes);
-  /// Forgets all bytes.
+  /// Resets the state.
   void restart();
-  /// Of all bytes so far.
+  /// The hash of all bytes so far.
   [[nodiscard]] HashValue value() const;
   /// The same as 32 hex digits.
   [[nodiscard]] std::string hex() const;

@@ -1,5 +1,5 @@
 // Arrays of millions of entries, in huge pages where the system grants them: scattered accesses
-// then miss the processor's table of pages far less often.
+// then cause far fewer TLB misses.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct FreeMemory {
   void operator()(void* memory) const { std::free(memory); }
 };
 
-/// Uninitialised memory for `bytes` bytes; that of a huge page and more in huge pages, if possible.
-/// Throws std::bad_alloc.
+/// Uninitialised memory for `bytes` bytes; from the size of a huge page on in huge pages, if
+/// possible. Throws std::bad_alloc.
 inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   constexpr std::size_t kHugePage = std::size_t{1} << 21;
   if (bytes >= kHugePage) alignment = kHugePage;
@@ -30,7 +30,7 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   if (memory == nullptr) throw std::bad_alloc();
 #if defined(MADV_HUGEPAGE)
   if (bytes >= kHugePage) {
-    // What was in use before lies in small pages, and would stay there. If this fails, they do.
+    // Reused memory is in small pages: releases these. On failure they stay.
     ::madvise(memory, bytes, MADV_DONTNEED);
     ::madvise(memory, bytes, MADV_HUGEPAGE);
   }
@@ -38,7 +38,7 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   return memory;
 }
 
-/// For containers of the standard library: large ones, too, lie in huge pages then.
+/// An allocator for standard containers: large ones are in huge pages, too.
 template <class T>
 struct LargeAllocator {
   using value_type = T;
@@ -52,18 +52,18 @@ struct LargeAllocator {
 template <class T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
 
-/// A growing array that initialises nothing. It keeps its memory when it shrinks.
+/// A growing array of uninitialised entries. It keeps its memory when it shrinks.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// New entries have no value yet; the others keep theirs.
+  /// New entries are uninitialised; existing entries are kept.
   void resize(std::size_t size) {
     if (size > capacity_) {
-      // Growing again by a little each time must not mean new memory each time.
+      // Grow geometrically, so that repeated small growth rarely reallocates.
       const std::size_t capacity = size + size / 8 + 64;
-      // NOLINTNEXTLINE(bugprone-sizeof-expression): where entries are pointers, of a pointer
+      // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be a pointer
       std::unique_ptr<T[], FreeMemory> bigger(static_cast<T*>(allocateLarge(capacity * sizeof(T))));
       for (std::size_t i = 0; i < size_; ++i) bigger[i] = memory_[i];
       memory_ = std::move(bigger);

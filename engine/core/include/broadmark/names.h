@@ -1,4 +1,4 @@
-// Names that people type: finding what they meant.
+// Names typed by users, and suggestions for misspelt ones.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace broadmark {
 
-/// A value and what people call it.
+/// A value and its name.
 template <class Value>
 struct NamedValue {
   Value value;
@@ -20,7 +20,7 @@ struct NamedValue {
 template <class Value>  // clang before 17 needs the guide spelled out
 NamedValue(Value, std::string_view)->NamedValue<Value>;
 
-/// Values with their names, stated once for both ways.
+/// Values with their names, for lookup in both directions.
 template <class Value, std::size_t size>
 struct NameTable {
   std::array<NamedValue<Value>, size> entries;
@@ -56,7 +56,7 @@ struct ValueOfEach {
   constexpr const Value& operator[](Key key) const { return values[static_cast<std::size_t>(key)]; }
 };
 
-/// The known name with the smallest edit distance to `name`, or "" when none is near.
+/// The known name with the smallest edit distance to `name`, or "" when none is close.
 std::string nearestName(std::string_view name, std::span<const std::string> known);
 
 /// «unknown KIND 'NAME'; did you mean 'NEAREST'? (one of: …)»

@@ -1,4 +1,4 @@
-// Layers without pairs among them, such as those of static geometry.
+// Sets of layers that never collide with each other, such as those of static geometry.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class NonCollidingLayers {
  public:
   /// An empty set.
   NonCollidingLayers() = default;
-  /// Greedy: adds layers in descending order of population. Only `bodies` count.
+  /// Greedy: adds layers in descending order of population. Counts only `bodies`.
   NonCollidingLayers(const CollisionFilter& filter, std::span<const std::uint32_t> bodies)
       : filter_(filter) {
     const LayerMatrix matrix = filter.matrix();

@@ -1,4 +1,4 @@
-// Pairs of overlapping bodies, and the buffers an algorithm answers with.
+// Pairs of overlapping bodies, and the buffers for an algorithm's answer.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace broadmark {
 
-/// Two bodies whose boxes overlap, by position in the frame; a < b.
+/// Two bodies with overlapping boxes, by index in the frame; a < b.
 struct Pair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -20,7 +20,7 @@ struct Pair {
   friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
-/// In arithmetic: compilers make a branch of a comparison, which is wrong half of the time.
+/// Branchless arithmetic: a comparison compiles to a branch, mispredicted half of the time.
 constexpr Pair orderedPair(std::uint32_t i, std::uint32_t j) {
   const std::uint32_t smaller = j ^ ((i ^ j) & (0U - std::uint32_t{i < j}));
   return {smaller, i ^ j ^ smaller};
@@ -28,11 +28,11 @@ constexpr Pair orderedPair(std::uint32_t i, std::uint32_t j) {
 
 /// A contiguous run of pairs, borrowed.
 using PairRun = std::span<const Pair>;
-/// A whole answer: one run or several (one per worker needs no merging), borrowed.
+/// A whole answer: one run or several (per-worker runs need no merging), borrowed.
 using PairRuns = std::span<const PairRun>;
 
-/// What is new about the pairs since the frame before, borrowed: those that began, which were not
-/// there, and those that ended, which were. Each pair once, and in one of the two only.
+/// The changes to the pairs since the frame before, borrowed: new pairs (began) and removed pairs
+/// (ended). Each pair once, and in only one of the two.
 struct PairEvents {
   PairRuns began;
   PairRuns ended;
@@ -41,7 +41,7 @@ struct PairEvents {
 /// Number of pairs in all runs, duplicates included.
 constexpr std::uint64_t pairCount(PairRuns runs) {
   std::uint64_t count = 0;
-  for (const PairRun run : runs) count += run.size();
+  for (const PairRun chunk : runs) count += chunk.size();
   return count;
 }
 /// Number of events.
@@ -49,12 +49,11 @@ constexpr std::uint64_t eventCount(const PairEvents& events) {
   return pairCount(events.began) + pairCount(events.ended);
 }
 
-/// For each of `bodies` bodies, in how many of the pairs it is. Bodies that do not exist count for
-/// nothing.
+/// The number of pairs of each of `bodies` bodies. Bodies that do not exist are ignored.
 inline std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pairs) {
   std::vector<std::uint32_t> counts(bodies, 0);
-  for (const PairRun run : pairs) {
-    for (const Pair pair : run) {
+  for (const PairRun chunk : pairs) {
+    for (const Pair pair : chunk) {
       if (pair.a >= bodies || pair.b >= bodies) continue;
       ++counts[pair.a];
       ++counts[pair.b];
@@ -63,35 +62,35 @@ inline std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pai
   return counts;
 }
 
-/// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it hands out
+/// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it provides
 /// uninitialised room, so that SIMD kernels can write first and count afterwards.
 ///
-/// Alone on its cache line: workers count up their own buffers, which lie side by side.
+/// Aligned to a cache line against false sharing: workers fill adjacent buffers.
 class alignas(64) PairBuffer {
  public:
   void clear() { size_ = 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] PairRun run() const { return {pairs_.data(), size_}; }
 
-  /// Adds the pair of i and j, in whichever order they come.
+  /// Adds the pair of i and j, given in any order.
   void add(std::uint32_t i, std::uint32_t j) {
     *room(1) = orderedPair(i, j);
     ++size_;
   }
 
-  /// Room for `count` more pairs behind the present ones; valid until the next call. What is
-  /// written there counts only after advance().
+  /// Room for `count` more pairs behind the present ones; valid until the next call. Written pairs
+  /// count only after advance().
   Pair* room(std::size_t count) {
     if (size_ + count > pairs_.size()) grow(size_ + count);
     return pairs_.data() + size_;
   }
   void advance(std::size_t count) { size_ += count; }
 
-  /// Drops the pairs for which keep(pair) is false; the others stay in their order.
+  /// Drops the pairs for which keep(pair) is false; preserves the order.
   template <class Keep>
   void retain(Keep keep) {
     std::size_t kept = 0;
-    // Without a branch: what is kept may well be unpredictable.
+    // Branchless: the outcome may be unpredictable.
     for (std::size_t i = 0; i < size_; ++i) {
       const Pair pair = pairs_[i];
       pairs_[kept] = pair;
@@ -106,7 +105,7 @@ class alignas(64) PairBuffer {
     pairs_.resize(std::max<std::size_t>({wanted, capacity + capacity / 2, 1024}));
   }
 
-  LargeArray<Pair> pairs_;  ///< as large as there is room
+  LargeArray<Pair> pairs_;  ///< its size is the capacity
   std::size_t size_ = 0;
 };
 

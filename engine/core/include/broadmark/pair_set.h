@@ -25,7 +25,7 @@ class PairSet {
     table_.assign(table_.size(), Slot{});
   }
 
-  /// Throws std::logic_error if a pair is in the set already.
+  /// Throws std::logic_error if a pair is already in the set.
   void insert(PairRun pairs) {
     while (2 * (pairs_.size() + pairs.size()) > table_.size()) grow();
     forEachPrefetched(pairs, [this](Pair pair) { insert(pair); });

@@ -1,5 +1,5 @@
-// Algorithms from outside: what a shared library exports so that `broadmark --plugin FILE` can load
-// it. A family's source file becomes one by a line at its end:
+// Algorithms in plug-ins: the symbols that a shared library exports so that `broadmark --plugin
+// FILE` can load it. A line at the end makes a plug-in of a family's source file:
 //
 //   BROADMARK_PLUGIN(broadmark::my_sweep::variants)
 //
@@ -9,7 +9,7 @@
 //   find_package(broadmark REQUIRED)
 //   broadmark_add_plugin(my_sweep my_sweep.cpp)
 //
-// It takes all of the framework's code from the program that loads it.
+// The program that loads it provides all of the framework's code.
 #pragma once
 
 #include <vector>
@@ -26,7 +26,7 @@
 #define BROADMARK_LIBRARY_LAYOUT ""
 #endif
 
-// How a library was built, as far as its preprocessor knows, and broadmark_add_plugin() tells it.
+// How a library was built, according to its preprocessor and broadmark_add_plugin().
 #if defined(__OPTIMIZE__)
 #define BROADMARK_OPTIMISED true
 #define BROADMARK_BUILD_OPTIMISED ", optimised"
@@ -62,29 +62,29 @@
 
 namespace broadmark {
 
-/// What program and library must have in common, for they exchange C++ objects: the public headers,
-/// to the byte, and how the standard library lays out its types. Not inline: the loader would give
-/// a library the program's in place of its own.
+/// What program and library must share to exchange C++ objects: the public headers, to the byte,
+/// and the standard library's type layouts. Not inline: the loader would resolve a library's copy
+/// to the program's.
 constexpr char kPluginInterface[] =
     BROADMARK_VERSION_TEXT ", headers " BROADMARK_HEADERS_HASH BROADMARK_LIBRARY_LAYOUT;
 
-/// What a library exports: entries of one kind.
+/// The export of a library: entries of one type.
 template <class Entry>
 struct Plugin {
   /// kPluginInterface of its build. Read before compatibility is known; must stay the first member.
   const char* interface;
   std::vector<Entry> (*entries)();
-  const char* build = nullptr;  ///< how it was built, in words; null: it does not tell
+  const char* build = nullptr;  ///< how it was built, in words; null: unknown
   bool optimised = true;
 };
 
-/// Under this name it exports a Plugin<Algorithm>.
+/// The symbol of an exported Plugin<Algorithm>.
 inline constexpr char kAlgorithmPluginSymbol[] = "broadmark_plugin";
 
 }  // namespace broadmark
 
 // NOLINTBEGIN(bugprone-macro-parentheses): a name and a type
-/// Exports a Plugin<Entry> under a name; entries() returns a std::vector of them.
+/// Exports a Plugin<Entry> under a symbol; entries() returns a std::vector of entries.
 #define BROADMARK_EXPORT_PLUGIN(symbol, Entry, entries)                              \
   extern "C" {                                                                       \
   [[gnu::visibility("default")]] extern const ::broadmark::Plugin<Entry> symbol;     \

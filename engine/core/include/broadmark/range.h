@@ -1,11 +1,11 @@
-// Half-open ranges of positions, and how workers share them.
+// Half-open ranges of indices, and their division among workers.
 #pragma once
 
 #include <cstddef>
 
 namespace broadmark {
 
-/// The positions [begin, end).
+/// The indices [begin, end).
 struct Range {
   std::size_t begin = 0;
   std::size_t end = 0;

@@ -1,4 +1,4 @@
-// A drawn structure, kept to be shown later.
+// A recorded drawing of a structure, for later display.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace broadmark {
 
-/// Keeps what an algorithm draws, up to `kMost` boxes and as many lines, and what it tells of
-/// bodies.
+/// Records what an algorithm draws, up to `kMost` boxes and as many lines, and its test counts by
+/// body.
 class RecordedDrawing final : public DebugDraw {
  public:
   static constexpr std::size_t kMost = 500'000;
@@ -20,7 +20,7 @@ class RecordedDrawing final : public DebugDraw {
     Aabb box;
     StructureRole role = StructureRole::cell;
     int level = 0;
-    std::uint32_t population = 0;  ///< 0: not told
+    std::uint32_t population = 0;  ///< 0: not reported
   };
   struct Line {
     std::array<float, 3> from{};
@@ -28,9 +28,9 @@ class RecordedDrawing final : public DebugDraw {
     StructureRole role = StructureRole::split;
   };
 
-  /// Of a scene of so many bodies; what is told of others is not kept.
+  /// For a scene of up to `bodies` bodies; counts of others are dropped.
   explicit RecordedDrawing(std::size_t bodies = 0) : bodies_(bodies) {}
-  /// One that was kept elsewhere.
+  /// From recorded parts.
   RecordedDrawing(std::vector<Box> boxes, std::vector<Line> lines, std::size_t left_out,
                   std::vector<std::uint32_t> tests)
       : bodies_(tests.size()),
@@ -57,9 +57,9 @@ class RecordedDrawing final : public DebugDraw {
 
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
-  /// How many boxes and lines were too many.
+  /// The number of boxes and lines beyond the limit.
   [[nodiscard]] std::size_t leftOut() const { return left_out_; }
-  /// By body; empty: not told.
+  /// By body; empty: not reported.
   [[nodiscard]] const std::vector<std::uint32_t>& tests() const { return tests_; }
 
  private:

@@ -1,4 +1,4 @@
-// The right pairs of any boxes, what every answer is compared with, and fingerprints of pairs.
+// Reference pairs for arbitrary boxes, and digests of pairs.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@
 
 namespace broadmark {
 
-/// Order-independent fingerprint of a set of pairs. Two answers with equal digests are the same set
-/// but for a chance of about 2^-64 (a duplicate changes it).
+/// Order-independent digest of a set of pairs. Different sets have equal digests with a probability
+/// of about 2^-64 (a duplicate changes the digest).
 struct PairDigest {
   std::uint64_t count = 0;
   std::uint64_t hash = 0;
@@ -23,15 +23,14 @@ struct PairDigest {
 };
 PairDigest digest(PairRuns);
 
-/// All overlapping pairs that are wanted, ascending, by testing each body against each: O(n²). The
-/// definition.
+/// All overlapping wanted pairs, ascending, by testing all pairs of bodies: O(n²). The definition.
 std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& = {});
 
-/// As many pairs as memory holds.
+/// No limit.
 inline constexpr std::size_t kAnyNumberOfPairs = std::numeric_limits<std::size_t>::max();
 
 /// The same by an exact sweep within strips of the second axis: O(n log n + candidates). Tested
-/// against bruteForcePairs. Throws InputError if there are more than `most`.
+/// against bruteForcePairs. Throws InputError if there are more than `most` pairs.
 std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {},
                              std::size_t most = kAnyNumberOfPairs);
 

@@ -20,14 +20,14 @@ namespace broadmark {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses a text; `name` stands for it in messages. Throws InputError with line and column.
+/// Parses a text; `name` is used in messages. Throws InputError with line and column.
 Json parseJson(std::string_view text, std::string_view name);
 
 /// The same; null where parseJson() would throw.
 Json jsonOrNull(std::string_view text);
 
-/// As a text that ends in a line feed; `indent` spaces a level. Texts that are not UTF-8 (names may
-/// come from file names) are made so.
+/// Serialises, with a final line feed; `indent` spaces a level. Replaces invalid UTF-8 (names may
+/// come from file names).
 std::string formatJson(const Json& json, int indent = 1);
 
 /// The same on one line, without a line feed.
@@ -42,18 +42,18 @@ Json orNull(const std::optional<T>& value) {
 /// A text for messages, control characters escaped.
 std::string onOneLine(const std::string& text);
 
-/// The kind of file that a JSON text says it is: the value of its "schema" ("broadmark-results/1"),
-/// or "" if it has none. What follows is not read. Throws InputError if it is not JSON.
+/// The schema of a JSON text: the value of its "schema" ("broadmark-results/1"), or "" if it has
+/// none. The rest is not read. Throws InputError if it is not JSON.
 std::string jsonSchema(std::string_view text, std::string_view name);
-/// Whether a JSON text is an object with this key. Reads no further than to it. Throws InputError
-/// if it is not JSON.
+/// Whether a JSON text is an object with this key. Stops reading at the key. Throws InputError if
+/// it is not JSON.
 bool jsonHasKey(std::string_view text, std::string_view key, std::string_view name);
 
-/// What to do with the parts of a JSON text as they are read, when the whole is not wanted in
-/// memory. Ignores all of them; a method that returns false ends the reading.
+/// SAX handler for JSON texts that should not be loaded as a whole. By default ignores everything;
+/// a method that returns false ends the reading.
 class JsonEvents : public nlohmann::json_sax<Json> {
  public:
-  /// `name` stands for the text in messages.
+  /// `name` is used in messages.
   explicit JsonEvents(std::string_view name) : name_(name) {}
 
   bool null() override { return true; }
@@ -78,8 +78,8 @@ class JsonEvents : public nlohmann::json_sax<Json> {
   std::string name_;
 };
 
-/// Hands the parts of a text to `events`, until one of its methods returns false. Throws InputError
-/// if it is not JSON.
+/// Passes the events of a text to `events`, until a method returns false. Throws InputError if it
+/// is not JSON.
 void readJson(std::string_view text, JsonEvents& events);
 
 /// A view of one JSON object within a file.
@@ -89,7 +89,7 @@ class JsonFields {
     if (!json_.is_object()) throw InputError(name_ + ": a JSON object is expected");
   }
 
-  /// What stands for the object in messages.
+  /// The object's name in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
 
   [[nodiscard]] bool has(const char* key) const {
@@ -112,7 +112,7 @@ class JsonFields {
     return expect(key, at(key).is_string(), "a text").template get<std::string>();
   }
 
-  /// The value that the text names in a NameTable.
+  /// The value with this name in a NameTable.
   template <class Table>
   [[nodiscard]] auto named(const char* key, const Table& table) const {
     const std::string name = text(key);
@@ -145,8 +145,8 @@ class JsonFields {
     return integerOf<Integer>(at(key), path(key), min);
   }
 
-  /// Reads a value of the type of `value`; an integer from 0 on. An optional one may be missing; of
-  /// a map each element is a field.
+  /// Reads a value of the type of `value`; integers must not be negative. An optional field may be
+  /// missing; a map has a field per element.
   void read(const char* key, std::string& value) const { value = text(key); }
   void read(const char* key, std::vector<std::string>& value) const { value = texts(key); }
   void read(const char* key, bool& value) const { value = boolean(key); }

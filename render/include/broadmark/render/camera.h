@@ -1,5 +1,5 @@
-// Cameras. They live in view space: the world, moved to the origin and scaled to side 1 in double
-// precision, so that no huge or far-off coordinate reaches a matrix.
+// Cameras in view space: the world, moved to the origin and scaled to side 1 in double precision,
+// so that no huge coordinate reaches a matrix.
 #pragma once
 
 #include <array>
@@ -25,12 +25,12 @@ struct ViewSpace {
   friend bool operator==(const ViewSpace&, const ViewSpace&) = default;
 };
 
-/// The view space in which `box` is centred and its longest edge has length 1. Around a point
-/// lengths stay as they are.
+/// The view space in which `box` is centred and its longest edge has length 1. If `box` is a point,
+/// lengths are not scaled.
 ViewSpace viewSpaceOf(const Aabb& box);
 
-/// What a picture should show: the world; joined with all bodies if it has no extent or holds fewer
-/// than half of their centres.
+/// The box that a picture should show: the world, merged with all bodies if it has no extent or
+/// contains fewer than half of their centres.
 Aabb shownBox(const Aabb& world, std::span<const Aabb> boxes);
 
 /// A perspective camera in view space; y is up. The frustum may be shifted off the view axis.
@@ -46,8 +46,8 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// The camera of the paper's figures: at (0.57, 0.20, 0.60)·3, looking at (0, −0.15, 0). Its window
-/// shows all of `box` (in view space), for any aspect ratio (width / height).
+/// The camera of the paper's figures, at (0.57, 0.20, 0.60)·3 with the target (0, −0.15, 0). Its
+/// window contains `box` (in view space), for any aspect ratio (width / height).
 Camera figureCamera(const Aabb& box, double aspect);
 
 /// Directions of the picture in view space, each of length 1.
@@ -58,7 +58,7 @@ struct CameraAxes {
 };
 CameraAxes axesOf(const Camera& camera);
 
-/// The length that one pixel covers at distance 1 before the eye, in a picture of that height.
+/// The length of a pixel at distance 1 from the eye, in a picture of this height.
 float pixelSize(const Camera& camera, int height);
 
 /// From view space to clip space, by columns as in OpenGL.
@@ -67,17 +67,17 @@ std::array<float, 16> viewProjection(const Camera& camera);
 /// Distance from the eye to the target.
 float focus(const Camera& camera);
 
-/// Where a point of view space appears: x and y in [-1, 1] from left to right and bottom to top,
-/// depth in [-1, 1]. Nothing for a point behind the eye.
+/// The projection of a point of view space: x and y in [-1, 1] from left to right and bottom to
+/// top, depth in [-1, 1]. Empty for a point behind the eye.
 std::optional<std::array<float, 3>> project(const Camera& camera,
                                             const std::array<float, 3>& point);
 
-/// Where and how a picture is drawn.
+/// The parameters of a picture.
 struct Viewpoint {
   Camera camera;
   int width = 1;   ///< pixels
   int height = 1;  ///< pixels
-  Rgb haze = 0;    ///< far things fade towards it: the background
+  Rgb haze = 0;    ///< the background, towards which distant bodies fade
 
   friend bool operator==(const Viewpoint&, const Viewpoint&) = default;
 };

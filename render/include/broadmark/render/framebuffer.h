@@ -1,5 +1,5 @@
-// A target to draw into, to show as a texture and to read back. Contexts without a surface have no
-// target of their own.
+// A render target that can be shown as a texture and read back. Contexts without a surface have no
+// default framebuffer.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,26 @@
 
 namespace broadmark {
 
-/// Reads the framebuffer that is bound for reading; the picture is opaque. Throws RenderError.
+/// Reads the framebuffer bound for reading, as an opaque picture. Throws RenderError.
 Picture readPicture(const Gl& gl, int width, int height);
 
-/// Colour and depth of one picture. Needs its context current from construction to destruction.
+/// Colour and depth of a picture. Requires its context to be current during its lifetime.
 class Framebuffer {
  public:
-  static constexpr int kSamples = 4;  ///< a pixel, by default
+  static constexpr int kSamples = 4;  ///< default number per pixel
 
-  /// With `samples` a pixel, or fewer if the driver cannot do so many. Throws RenderError if it
-  /// cannot hold a picture of that size.
+  /// `samples`: per pixel, reduced to the driver's maximum. Throws RenderError if the driver does
+  /// not support this size.
   Framebuffer(const Gl& gl, int width, int height, int samples = kSamples);
 
   /// Makes it the target of drawing and sets the viewport.
   void bind() const;
-  /// Replaces the picture: RGBA8 in memory order, rows from bottom to top. Only with one sample a
+  /// Replaces the picture: RGBA8 in memory order, rows from bottom to top. Only with one sample per
   /// pixel. Throws RenderError.
   void write(std::span<const std::uint32_t> rgba) const;
-  /// Brings texture() up to date with what has been drawn.
+  /// Updates texture() with the drawn picture.
   void resolve() const;
-  /// The picture as a GL texture, its first row at the bottom.
+  /// The picture as a GL texture, with the first row at the bottom.
   [[nodiscard]] GLuint texture() const { return resolved_.colour.get(); }
   /// The finished picture, opaque. Throws RenderError.
   [[nodiscard]] Picture read() const;
@@ -42,7 +42,7 @@ class Framebuffer {
     GlObject depth;
     GlObject framebuffer;
   };
-  // These do not throw: a target that the driver cannot make has framebuffer 0.
+  // Do not throw: framebuffer 0 if the driver cannot create the target.
   [[nodiscard]] Target makeTextureTarget() const;
   [[nodiscard]] Target makeMultisampleTarget(int samples) const;
   [[nodiscard]] Target whereComplete(Target target) const;
@@ -50,7 +50,7 @@ class Framebuffer {
   const Gl* gl_;
   int width_;
   int height_;
-  Target drawn_;     ///< with several samples a pixel; empty without
+  Target drawn_;     ///< with several samples per pixel, or empty
   Target resolved_;  ///< textures
 };
 

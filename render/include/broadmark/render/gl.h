@@ -1,5 +1,5 @@
-// The OpenGL 3.3 functions that we use, in one table. Whatever made the context (EGL, OSMesa, GLFW)
-// fills it: no loader library works with all three.
+// A table of the OpenGL 3.3 functions in use. The library that created the context (EGL, OSMesa,
+// GLFW) fills it, because no loader library works with all three.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES  // for the types of the functions; none is linked
@@ -34,7 +34,7 @@ namespace broadmark {
 /// Address of a GL function, or null.
 using GlLoader = std::function<void*(const char* name)>;
 
-/// The function table of one context.
+/// The function table of a context.
 struct Gl {
   /// Throws RenderError if a function is missing.
   explicit Gl(const GlLoader& load);
@@ -78,8 +78,8 @@ class GlObject {
   Delete destroy_;
 };
 
-/// Makes one object of the kinds that GL creates and deletes in arrays:
-/// makeObject(gl.GenBuffers, gl.DeleteBuffers).
+/// Creates an object with GL's functions for arrays of objects: makeObject(gl.GenBuffers,
+/// gl.DeleteBuffers).
 template <class Generate, class DeleteArray>
 GlObject makeObject(Generate generate, DeleteArray destroy) {
   GLuint id = 0;
@@ -87,7 +87,7 @@ GlObject makeObject(Generate generate, DeleteArray destroy) {
   return {id, [destroy](GLuint old) { destroy(1, &old); }};
 }
 
-/// Compiles and links. Throws RenderError with the compiler's log.
+/// Compiles and links a program. Throws RenderError with the compiler's log.
 GlObject makeProgram(const Gl& gl, std::string_view vertex_source,
                      std::string_view fragment_source);
 

@@ -1,8 +1,8 @@
-// Events of mouse and keyboard in their order, from a window or from a script.
+// Mouse and keyboard events in order, from a window or from a script.
 //
-// Dear ImGui 1.86 reads the state of keys and buttons once per picture: a press and a release
-// between two pictures would be lost. So events wait here, and each picture takes only as many as
-// it can tell apart.
+// Dear ImGui 1.86 reads the state of keys and buttons once per picture, and would lose a press and
+// a release between two pictures. Therefore events are queued, and each picture applies only as
+// many as it can distinguish.
 #pragma once
 
 #include <deque>
@@ -12,7 +12,7 @@ struct ImGuiIO;
 
 namespace broadmark {
 
-/// Keys are numbered as GLFW numbers them.
+/// A key code of GLFW.
 using Key = int;
 
 struct InputEvent {
@@ -27,7 +27,7 @@ struct InputEvent {
 /// The key named "Escape", "F12", "Left", "A", …; 0 if there is none.
 Key keyNamed(const std::string& name);
 
-/// The name of a key, which keyNamed() knows; "" if it has none.
+/// The name of a key for keyNamed(); "" if it has none.
 std::string keyName(Key key);
 
 class InputQueue {
@@ -35,16 +35,16 @@ class InputQueue {
   void push(const InputEvent& event) { events_.push_back(event); }
   [[nodiscard]] bool empty() const { return events_.empty(); }
 
-  /// Hands events over to the next picture. Stops before an event that the picture could not tell
-  /// from those already handed over: a key or button changes a second time, the mouse moves or its
-  /// wheel turns after a button, a key follows a character, a modifier follows another key.
+  /// Applies events to the next picture, up to an event that the picture could not distinguish from
+  /// the applied ones: a second change of a key or button, a move or turn of the wheel after a
+  /// button, a key after a character, or a modifier after another key.
   void applyTo(ImGuiIO& io);
 
  private:
   std::deque<InputEvent> events_;
 };
 
-/// Tells Dear ImGui our numbers of its keys.
+/// Sets Dear ImGui's map to our key codes.
 void setKeyMap(ImGuiIO& io);
 
 }  // namespace broadmark

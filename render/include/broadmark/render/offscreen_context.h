@@ -1,4 +1,4 @@
-// How an off-screen context is made. Most code only needs makeOffscreenContext(GlSource).
+// Creation of off-screen contexts. Most code only needs makeOffscreenContext(GlSource).
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace broadmark {
 
-/// The libraries that a context is made from.
+/// The libraries that create a context.
 struct OffscreenOptions {
   std::string egl_library = "libEGL.so.1";
   std::string osmesa_library = "libOSMesa.so.8";
-  bool software = false;  ///< no hardware devices: the same picture on every machine
+  bool software = false;  ///< without hardware devices: the same picture on every machine
 };
 
 /// Throws RenderError.

@@ -1,5 +1,5 @@
-// The interactive camera, which turns about a pivot in view space: a plain struct and pure
-// functions on it. toCamera() makes the Camera to draw with.
+// The interactive camera, which orbits a pivot in view space: a plain struct with pure functions.
+// toCamera() converts it to a Camera for drawing.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 
 namespace broadmark {
 
-/// Looks at the pivot from a distance; y is up, angles in radians.
+/// A camera directed at the pivot; y is up, angles are in radians.
 struct OrbitCamera {
   std::array<float, 3> pivot{};
-  float yaw = 0;                ///< 0 looks along -z, a quarter turn looks along -x
-  float pitch = 0;              ///< positive looks down; within ±kSteepest
+  float yaw = 0;                ///< view direction: 0 is -z, a quarter turn is -x
+  float pitch = 0;              ///< positive is downwards; within ±kSteepest
   float distance = 2;           ///< from the pivot to the eye, kNearest…kFarthest
-  float field_of_view = 0.70F;  ///< from the picture's lower to its upper border
-  float cut = kUncut;           ///< nearer than this part of the distance nothing is drawn; below 1
+  float field_of_view = 0.70F;  ///< vertical
+  float cut = kUncut;           ///< near plane as a fraction of the distance; below 1
 
-  /// A little less than straight down, where the yaw would have no meaning.
+  /// A little less than straight down, where the yaw is undefined.
   static constexpr float kSteepest = 1.562F;
   static constexpr float kUncut = 0.02F;
   static constexpr float kNearest = 1e-5F;
@@ -28,7 +28,7 @@ struct OrbitCamera {
   friend bool operator==(const OrbitCamera&, const OrbitCamera&) = default;
 };
 
-/// Where to look from; pivot and distance stay.
+/// Standard views, with the same pivot and distance.
 enum class Direction { figure, front, back, left, right, top, bottom };
 inline constexpr NameTable kDirections{{NamedValue{Direction::figure, "figure"},
                                         {Direction::front, "front"},
@@ -39,36 +39,36 @@ inline constexpr NameTable kDirections{{NamedValue{Direction::figure, "figure"},
                                         {Direction::bottom, "bottom"}}};
 OrbitCamera lookedFrom(OrbitCamera camera, Direction direction);
 
-/// Turns about the pivot, by radians.
+/// Orbits the pivot by angles in radians.
 OrbitCamera orbited(OrbitCamera camera, float yaw, float pitch);
 
-/// Moves the picture to the right and up, by parts of its height: a point at the pivot's depth
-/// stays under the pointer that drags it.
+/// Moves the picture to the right and up, by fractions of its height: a dragged point at the
+/// pivot's depth stays under the pointer.
 OrbitCamera panned(OrbitCamera camera, float right, float up);
 
-/// Brings `point` (in view space) nearer (`factor` < 1) or farther away (> 1) without moving it on
-/// the screen; pointUnder() gives the point under the pointer. Stops at the limits of the distance.
+/// Zooms towards `point` (in view space; `factor` < 1) or away from it (> 1) without moving it on
+/// the screen; pointUnder() gives the point under the pointer. The distance is clamped.
 OrbitCamera zoomed(OrbitCamera camera, float factor, const std::array<float, 3>& point);
 
-/// Moves eye and pivot by multiples of the distance: the speed suits the scale of the picture.
+/// Moves eye and pivot by multiples of the distance, so that the speed scales with the picture.
 OrbitCamera flown(OrbitCamera camera, float forward, float right, float up);
 
-/// Looks at the middle of a box (in view space), in the same direction, from a distance that shows
-/// all of it. Around a very small box some of its neighbourhood is shown.
+/// Focuses the middle of a box (in view space) in the same direction, at a distance that shows the
+/// whole box, or a neighbourhood of a very small box.
 OrbitCamera focusedOn(OrbitCamera camera, const Aabb& box, double aspect);
 
-/// Cuts away everything nearer to the eye than a box (in view space).
+/// Clips everything nearer to the eye than a box (in view space).
 OrbitCamera cutAway(OrbitCamera camera, const Aabb& box);
 
-/// The way from one view to another, t from 0 to 1, slow at both ends. The new pivot moves across
-/// the screen in a straight line.
+/// A transition between two views with t from 0 to 1, slow at both ends. The new pivot moves on a
+/// straight line on the screen.
 OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t);
 
-/// The point at the pivot's depth that is seen at (x, y), each from -1 to 1, y upwards.
+/// The point at the pivot's depth that appears at (x, y), each from -1 to 1, y upwards.
 std::array<float, 3> pointUnder(const OrbitCamera& camera, double aspect, float x, float y);
 
-/// The camera to draw with, for an aspect ratio (width / height). `contents` (in view space) bounds
-/// everything to be seen: near and far follow from it.
+/// The camera for drawing, for an aspect ratio (width / height). `contents` (in view space) bounds
+/// all visible objects, and determines the near and far planes.
 Camera toCamera(const OrbitCamera& camera, double aspect, const Aabb& contents);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Which bodies lie under the pointer. Boxes are in world coordinates, the camera is in view space.
+// Picking bodies under the pointer. Boxes are in world coordinates, the camera is in view space.
 #pragma once
 
 #include <array>
@@ -25,17 +25,17 @@ struct Ray {
 /// middle of the first pixel.
 Ray rayThrough(const Viewpoint& viewpoint, float x, float y);
 
-/// Which bodies count: those with a value other than 0; all if empty. Absent ones never do.
+/// Selects the present bodies with a value other than 0; if empty, all present bodies.
 using BodyMask = std::span<const std::uint8_t>;
 
 struct PickedBody {
   std::uint32_t body = 0;
-  float depth = 0;  ///< of the point hit, in view space: Ray::at()
+  float depth = 0;  ///< of the hit point, in view space: Ray::at()
 };
 
-/// The foremost body under a point of the picture. Bodies around the eye are not hit, as they are
-/// not drawn. Every body reaches at least `smallest` pixels from its middle to each side, so that
-/// flat and tiny bodies can be hit. O(boxes).
+/// The foremost body under a point of the picture. Bodies around the eye are not hit, because they
+/// are not drawn. Bodies are enlarged to at least `smallest` pixels from the middle to each side,
+/// so that flat and tiny bodies can be hit. O(boxes).
 std::optional<PickedBody> pickBody(std::span<const Aabb> boxes, const ViewSpace& space,
                                    const Viewpoint& viewpoint, float x, float y, BodyMask mask = {},
                                    float smallest = 2);
@@ -46,10 +46,10 @@ struct ScreenRectangle {
   std::array<float, 2> to{};
 };
 
-/// Which part of a body has to lie in the rectangle.
+/// The part of a body that must be in the rectangle.
 enum class SelectBy { centre, whole };
 
-/// The bodies in a rectangle of the picture, also those hidden by others, in ascending order.
+/// The bodies in a rectangle of the picture, including hidden ones, in ascending order.
 std::vector<std::uint32_t> bodiesWithin(std::span<const Aabb> boxes, const ViewSpace& space,
                                         const Viewpoint& viewpoint,
                                         const ScreenRectangle& rectangle, BodyMask mask = {},

@@ -1,4 +1,4 @@
-// Pictures: drawing a frame off-screen, PNG files.
+// Drawing a frame off-screen, and PNG files.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace broadmark {
 
-/// There is no OpenGL, or it failed. The message is one line: what was tried and why it failed.
+/// OpenGL is missing or failed. The message is one line with the attempts and the reasons.
 class RenderError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -26,10 +26,10 @@ struct Picture {
   std::vector<std::uint8_t> rgba;
 };
 
-/// Where an off-screen OpenGL 3.3 core context comes from. `automatic` tries EGL, then OSMesa.
+/// The source of an off-screen OpenGL 3.3 core context. `automatic` tries EGL, then OSMesa.
 enum class GlSource { automatic, egl, osmesa };
 
-/// An off-screen context, current on the thread that made it; at most one lives per thread.
+/// An off-screen context, current on the thread that created it; at most one exists per thread.
 class OffscreenContext {
  public:
   virtual ~OffscreenContext() = default;
@@ -39,17 +39,17 @@ class OffscreenContext {
   [[nodiscard]] virtual void* function(const char* name) const = 0;
 };
 
-/// Throws RenderError naming every source that was tried and why each failed.
+/// Throws RenderError with the failed sources and the reasons.
 std::unique_ptr<OffscreenContext> makeOffscreenContext(GlSource);
 
-inline constexpr int kLargestPicture = 16384;  ///< pixels, either side
+inline constexpr int kLargestPicture = 16384;  ///< pixels per side
 
-/// Draws one frame: all boxes, those in a pair of `overlaps` in a colour of their own, the world
-/// and its floor, seen by figureCamera(). Throws RenderError.
+/// Draws a frame with figureCamera(): all boxes, with a separate colour for bodies in `overlaps`,
+/// the world and its floor. Throws RenderError.
 Picture drawFrame(OffscreenContext&, const SceneInfo&, const Frame&, PairRuns overlaps, int width,
                   int height);
 
-/// Writes a PNG, whole or not at all. Throws InputError if the path cannot be written.
+/// Writes a PNG atomically. Throws InputError if the path cannot be written.
 void writePng(const std::filesystem::path&, const Picture&);
 
 /// Reads a PNG. Throws InputError.

@@ -1,5 +1,5 @@
-// A plot of curves through a few points each, such as times over numbers of bodies, for the user
-// interface.
+// A plot of curves with a few points each for the user interface, such as times over numbers of
+// bodies.
 #pragma once
 
 #include <imgui.h>
@@ -24,12 +24,12 @@ struct PointCurve {
 };
 
 struct PointPlotOptions {
-  bool logarithmic = false;  ///< the values; what they are plotted over always is
+  bool logarithmic = false;  ///< the vertical axis; the horizontal one always is
   const char* unit = "s";    ///< of the values, as in PlotOptions
-  const char* across = "";   ///< what they are plotted over: "bodies"
+  const char* across = "";   ///< name of the horizontal axis: "bodies"
 };
 
-/// A point by its numbers, and where it was drawn.
+/// The indices of a point, and its position in the window.
 struct DrawnPoint {
   std::size_t curve = 0;
   std::size_t point = 0;
@@ -38,12 +38,12 @@ struct DrawnPoint {
 
 struct PointPlotResult {
   std::vector<DrawnPoint> drawn;
-  std::optional<DrawnPoint> hovered;  ///< the one that the mouse means
-  bool clicked = false;               ///< whether that was clicked
+  std::optional<DrawnPoint> hovered;  ///< the point nearest to the mouse
+  bool clicked = false;               ///< whether `hovered` was clicked
 };
 
 /// Draws a plot of `width` x `height` pixels into the current Dear ImGui window, in the colours of
-/// its style. Below stand the numbers that points have, not round ones. All numbers are above 0.
+/// its style. The horizontal axis has ticks at the points' numbers. All numbers are above 0.
 PointPlotResult drawPointPlot(const char* id, const std::vector<PointCurve>& curves,
                               const PointPlotOptions& options, float width, float height);
 

@@ -1,5 +1,5 @@
 // The 3D view of a scene: bodies as boxes, the world around them, lines and outlines. Draws
-// off-screen into a texture, by the GPU; where OpenGL runs on the processor, by our own renderer.
+// off-screen into a texture, on the GPU, or with the software renderer if OpenGL runs on the CPU.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace broadmark {
 
 class Framebuffer;
 
-/// How a line is drawn where bodies hide it.
+/// The style of a line behind bodies.
 enum class OcclusionStyle { hidden, faint, shown };
 
 /// A straight line in the world.
@@ -41,45 +41,45 @@ struct SceneWireBox {
   OcclusionStyle behind = OcclusionStyle::hidden;
 };
 
-/// What to draw. The spans are borrowed for one call of draw(). They are read only if their
+/// The content of the view. The spans must be valid during draw(), which reads them only if their
 /// revision or the space has changed.
 struct SceneViewContent {
   ViewSpace space;
   Aabb world;
 
-  std::uint64_t bodies_revision = 0;        ///< of the four that follow
-  std::span<const Aabb> boxes;              ///< in the world; empty ones are not drawn
-  std::span<const Rgb> colours;             ///< one for each box
-  BodyMask visible;                         ///< one for each box, or empty: all
-  std::span<const std::uint32_t> selected;  ///< bodies to be outlined, also invisible ones
+  std::uint64_t bodies_revision = 0;        ///< of the next four members
+  std::span<const Aabb> boxes;              ///< in the world; empty boxes are not drawn
+  std::span<const Rgb> colours;             ///< by box
+  BodyMask visible;                         ///< by box; empty: all are visible
+  std::span<const std::uint32_t> selected;  ///< outlined bodies, including invisible ones
 
-  std::uint64_t lines_revision = 0;  ///< of the two that follow
+  std::uint64_t lines_revision = 0;  ///< of the next two members
   std::span<const SceneLine> lines;
   std::span<const SceneWireBox> wire_boxes;
 
-  Palette theme = kLightPalette;  ///< of all but the bodies and lines
+  Palette theme = kLightPalette;  ///< of everything except bodies and lines
   bool shows_world = true;
-  bool shows_grid = true;   ///< and the floor under it
-  bool shows_axes = false;  ///< a small cross in the lower left corner, see axisTips()
+  bool shows_grid = true;   ///< with the floor under it
+  bool shows_axes = false;  ///< small axes in the lower left corner, see axisTips()
   float scale = 1;          ///< of all widths and of the axes
 };
 
-/// How the scene is drawn: by OpenGL, or by our own renderer on the processor. `automatic`: by our
-/// own if OpenGL runs on the processor, too.
+/// The renderer: OpenGL, or the software renderer. `automatic`: the software renderer if OpenGL
+/// also runs on the CPU.
 enum class Technique { automatic, gl, splat };
 
 struct SceneViewOptions {
   Technique technique = Technique::automatic;
-  int samples = 0;  ///< a pixel, if OpenGL draws; 0: four on a GPU, else one
+  int samples = 0;  ///< per pixel, for OpenGL; 0: four on a GPU, else one
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   Isa isa = bestIsa();
   std::size_t max_batch = std::numeric_limits<std::size_t>::max();  ///< boxes per draw call
 };
 
-/// Whether this context's OpenGL runs on the processor.
+/// Whether this context's OpenGL runs on the CPU.
 bool isSoftwareRenderer(const Gl& gl);
 
-/// Needs its context current from construction to destruction. All members throw RenderError.
+/// Requires its context to be current during its lifetime. All members may throw RenderError.
 class SceneView {
  public:
   explicit SceneView(const Gl& gl, const SceneViewOptions& options = {});
@@ -87,22 +87,22 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  /// Size of the picture in pixels; less than 1 becomes 1.
+  /// Sets the size of the picture in pixels, at least 1.
   void resize(int width, int height);
 
-  /// Draws, unless nothing has changed since the last call. Like all members, restores framebuffer
-  /// and viewport.
+  /// Draws if anything has changed since the last call. Like all members, restores framebuffer and
+  /// viewport.
   void draw(const SceneViewContent& content, const Camera& camera);
-  /// Near and far planes follow from the content.
+  /// Derives near and far planes from the content.
   void draw(const SceneViewContent& content, const OrbitCamera& camera);
 
-  /// The picture: a GL texture whose first row is at the bottom, until the next resize().
+  /// The picture as a GL texture with the first row at the bottom, valid until the next resize().
   [[nodiscard]] GLuint texture() const;
   [[nodiscard]] Picture read() const;
 
-  /// The viewpoint drawn last, for picking.
+  /// The viewpoint of the last draw(), for picking.
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
-  /// Whether our own renderer draws the scene.
+  /// Whether the software renderer draws the scene.
   [[nodiscard]] bool isSplatting() const;
 
  private:
@@ -119,8 +119,8 @@ class SceneView {
   Viewpoint viewpoint_;
 };
 
-/// Where the names x, y and z belong in a picture drawn with shows_axes and that scale: pixels from
-/// the upper left corner.
+/// The positions of the labels x, y and z in a picture with shows_axes and this scale, in pixels
+/// from the upper left corner.
 std::array<std::array<float, 2>, 3> axisTips(const Viewpoint& viewpoint, float scale);
 
 }  // namespace broadmark

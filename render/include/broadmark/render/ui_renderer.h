@@ -1,5 +1,5 @@
-// Draws Dear ImGui's lists by our table of functions, in windows and off-screen alike. Dear ImGui's
-// own OpenGL backend brings a loader that does not work with OSMesa.
+// Draws Dear ImGui's lists with our function table, in windows and off-screen. The loader of Dear
+// ImGui's OpenGL backend does not work with OSMesa.
 #pragma once
 
 #include "broadmark/render/gl.h"
@@ -10,15 +10,15 @@ struct ImFontAtlas;
 
 namespace broadmark {
 
-/// Needs its context current from construction to destruction. Textures are shown by their GL
-/// names: ImGui::Image(uiTexture(id), …).
+/// Requires its context to be current from construction to destruction. Textures are identified by
+/// their GL names: ImGui::Image(uiTexture(id), …).
 class UiRenderer {
  public:
   explicit UiRenderer(const Gl& gl);
 
-  /// Makes a texture of the atlas. Call it again when its fonts have changed.
+  /// Creates a texture of the atlas. Call it again after changes of the fonts.
   void uploadFonts(ImFontAtlas& atlas);
-  /// Draws over the whole of the current framebuffer.
+  /// Draws over the whole current framebuffer.
   void draw(const ImDrawData& data);
 
  private:
@@ -32,9 +32,9 @@ class UiRenderer {
   GlObject font_texture_;
 };
 
-/// A GL texture as Dear ImGui names it.
+/// The Dear ImGui id of a GL texture.
 inline void* uiTexture(GLuint id) {
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): it is never followed
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): it is never dereferenced
   return reinterpret_cast<void*>(static_cast<std::uintptr_t>(id));
 }
 

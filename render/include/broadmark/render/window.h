@@ -1,4 +1,4 @@
-// A window on the screen, made by GLFW.
+// A GLFW window.
 #pragma once
 
 #include <array>
@@ -14,18 +14,18 @@ struct GLFWcursor;
 
 namespace broadmark {
 
-/// A window with an OpenGL 3.3 core context, current on the thread that made it. At most one lives
-/// at a time.
+/// A window with an OpenGL 3.3 core context, current on the thread that created it. At most one
+/// exists at a time.
 class Window {
  public:
-  /// `width` and `height` in screen units, or less if the screen is smaller. Throws RenderError
+  /// `width` and `height` are in screen units, limited to the screen's size. Throws RenderError
   /// without a display or without OpenGL 3.3.
   Window(const std::string& title, int width, int height);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Takes in new events; waits for one, at most `seconds`.
+  /// Polls events; waits for an event for up to `seconds`.
   void poll(double seconds);
   void swap();
   [[nodiscard]] bool closing() const;
@@ -37,11 +37,11 @@ class Window {
 
   [[nodiscard]] int width() const;   ///< pixels
   [[nodiscard]] int height() const;  ///< pixels
-  /// Scale at which text has a readable size: 1, or 2 on a screen of double density.
+  /// The scale for text of readable size: 1, or 2 on a screen of double density.
   [[nodiscard]] float scale() const;
 
   InputQueue& input() { return input_; }
-  /// Files dropped onto the window since the last call.
+  /// The files dropped onto the window since the last call.
   std::vector<std::filesystem::path> takeDrops();
 
   [[nodiscard]] std::string clipboard() const;
@@ -57,7 +57,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   InputQueue input_;
   std::vector<std::filesystem::path> drops_;
-  std::array<GLFWcursor*, 16> cursors_{};  ///< made when first shown; GLFW frees them
+  std::array<GLFWcursor*, 16> cursors_{};  ///< created when first shown; GLFW frees them
 };
 
 }  // namespace broadmark

@@ -17,10 +17,10 @@ inline constexpr std::string_view kAuthoredSceneSchema = "broadmark-scene/1";
 /// Limits of a box's edges and of a sphere's diameter.
 inline constexpr float kMinEdge = 1e-6F;
 inline constexpr float kMaxEdge = 1e6F;
-/// The frame in which a body vanishes that stays.
+/// The value of `vanishes` for a body that stays.
 inline constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
-/// A body as it starts.
+/// A body in its initial state.
 struct AuthoredBody {
   Shape shape = BoxShape{{0.5F, 0.5F, 0.5F}};
   double mass = 1;
@@ -29,15 +29,15 @@ struct AuthoredBody {
   Vec3 linear_velocity{};   ///< world units per second
   Vec3 angular_velocity{};  ///< radians per second
   std::uint8_t layer = 0;
-  std::uint32_t appears = 0;        ///< the first frame that it is in, as stated above
-  std::uint32_t vanishes = kNever;  ///< the first frame after that which it is not in
-  std::uint32_t group = 0;  ///< whose bodies an editor selects together, 1 to kMaxBodies; 0: none
+  std::uint32_t appears = 0;        ///< the first frame in which it is present
+  std::uint32_t vanishes = kNever;  ///< the first later frame in which it is absent
+  std::uint32_t group = 0;  ///< bodies selected together in an editor, 1 to kMaxBodies; 0: none
 
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };
 
-/// Calls visit(key, value, default) for each property of a body but its shape, under the key that
-/// it has in files.
+/// Calls visit(key, value, default) for each property of a body except its shape, with its key in
+/// files.
 template <class Body, class Visit>
 void visitProperties(Body& body, const Visit& visit) {
   static constexpr AuthoredBody kDefault;
@@ -56,11 +56,11 @@ void visitProperties(Body& body, const Visit& visit) {
 /// A plain value. Lengths are in world units. Body id = position in the list. At most kMaxBodies
 /// (simulation.h) bodies.
 struct AuthoredScene {
-  std::string name = "Untitled";  ///< as recordings state it
+  std::string name = "Untitled";  ///< as in recordings
   Aabb world{{-10, -10, -10, 0}, {10, 10, 10, 0}};
-  LayerMatrix collide = LayerMatrix::all();  ///< which layers collide
+  LayerMatrix collide = LayerMatrix::all();  ///< colliding layers
   std::uint32_t triggers = 0;  ///< bit b: bodies of layer b push nothing, and nothing pushes them
-  /// The values of AuthoredParameters that are stated; the others have their defaults.
+  /// The stated values of AuthoredParameters; the others have their defaults.
   ParameterValues parameters;
   std::vector<AuthoredBody> bodies;
 
@@ -71,23 +71,23 @@ struct AuthoredScene {
 class SceneSource {
  public:
   virtual ~SceneSource() = default;
-  /// The frame handed out last as a scene of its own: its bodies with their velocities, and the
-  /// gravity that acts on them.
+  /// The latest frame as a separate scene: its bodies with their velocities, and the present
+  /// gravity.
   [[nodiscard]] virtual AuthoredScene authoredScene() = 0;
 };
 
-/// What is wrong with a part of a scene and what would be right ("mass: a number from … is
-/// expected"); "": nothing.
+/// The fault of a part of a scene and the expected value ("mass: a number from … is expected"); "":
+/// none.
 std::string faultOfBody(const AuthoredBody&);
 std::string faultOfName(std::string_view name);
 std::string faultOfWorld(const Aabb&);
 
-/// The scene as JSON (docs/scene-format.md), one body a line. Reading it back gives the same scene,
-/// bit for bit. Throws InputError when a part of the scene is wrong.
+/// The scene as JSON (docs/scene-format.md), one body a line. Round-trips bit for bit. Throws
+/// InputError if a part of the scene is invalid.
 std::string formatAuthoredScene(const AuthoredScene&);
 
-/// Reads such a text, in time and memory proportional to its length; `name` stands for it in
-/// messages. Throws InputError that names the body and the key, and what would be right.
+/// Parses such a text, in time and memory proportional to its length; `name` is used in messages.
+/// Throws InputError with the body and the key, and what would be right.
 AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
 
 /// A body that fills this box; a sphere if the object type says so.
@@ -96,10 +96,10 @@ AuthoredBody bodyIn(const Aabb& box, const std::string& object_type = {});
 /// The object type in its recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
 std::string objectTypeName(const AuthoredScene&);
 
-/// Which pairs of its bodies are wanted.
+/// The collision filter of its bodies.
 CollisionFilter collisionFilterOf(const AuthoredScene&);
 
-/// The tight box of each body where it starts.
+/// The tight box of each body in its initial pose.
 std::vector<Aabb> boxesOf(const AuthoredScene&);
 
 }  // namespace broadmark::scenes

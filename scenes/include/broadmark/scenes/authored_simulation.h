@@ -1,4 +1,4 @@
-// Simulating authored scenes, and making authored scenes from frames.
+// Simulation of authored scenes, and conversion of frames to authored scenes.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ namespace broadmark::scenes {
 
 class ChosenEngine;
 
-/// The typed parameters of an authored scene: frames, engine, gravity, physics, and those of the
-/// chosen engine.
+/// The typed parameters of an authored scene: frames, engine, gravity, physics, and the chosen
+/// engine's.
 class AuthoredParameters final : public Parametrised {
  public:
-  /// The defaults, but for the stated values. Throws InputError for an unknown parameter or a bad
-  /// value.
+  /// The defaults, overridden by the stated values. Throws InputError for an unknown parameter or
+  /// an invalid value.
   explicit AuthoredParameters(const ParameterValues& stated = {});
-  /// The values of another scene for all parameters that both have.
+  /// Takes the values of another scene for all common parameters.
   AuthoredParameters(const ParameterValues& other, const Vec3& gravity);
   ~AuthoredParameters() override;
   AuthoredParameters(AuthoredParameters&&) noexcept;
@@ -45,23 +45,23 @@ class AuthoredParameters final : public Parametrised {
   std::unique_ptr<ChosenEngine> engine_parameters_;
 };
 
-/// Has an authored scene as its document.
+/// A simulation with an authored scene as its document.
 class SceneDocument {
  public:
   virtual ~SceneDocument() = default;
-  /// The scene as it starts, with the present parameters.
+  /// The scene in its initial state, with the present parameters.
   [[nodiscard]] virtual AuthoredScene document() = 0;
 };
 
-/// The simulation of an authored scene; also a SceneDocument. `file` is where the scene is saved,
-/// if it is. Throws InputError when a part of the scene is wrong.
+/// The simulation of an authored scene; also a SceneDocument. `file`: the scene's path, if it was
+/// saved. Throws InputError if a part of the scene is invalid.
 std::unique_ptr<Simulation> makeAuthoredSimulation(AuthoredScene scene,
                                                    std::filesystem::path file = {});
 
-/// Frame `frame` of a recording or simulation as a scene of its own, with all that the source
-/// knows: a SceneSource gives bodies with velocities and gravity; a PoseSource turned bodies at
-/// rest; any other source unturned bodies at rest, one for each box. Leaves the source at that
-/// frame. Throws InputError when there is no such frame, or a box in it cannot be a body.
+/// Frame `frame` of a recording or simulation as a separate scene, with all available data: a
+/// SceneSource provides bodies with velocities and gravity; a PoseSource rotated bodies at rest;
+/// any other source unrotated bodies at rest, one for each box. Leaves the source at that frame.
+/// Throws InputError if there is no such frame, or a box in it cannot be a body.
 AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame);
 
 }  // namespace broadmark::scenes

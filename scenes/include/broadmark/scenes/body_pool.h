@@ -1,5 +1,5 @@
-// Where engines keep their bodies: each stays at its address until it is removed, and memory is
-// used again. Adding and removing take constant time.
+// Storage for an engine's bodies with stable addresses; memory is reused. Adding and removing take
+// constant time.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class BodyPool {
     return slots_[slot].emplace(slot, std::forward<Arguments>(arguments)...);
   }
 
-  /// The body is one of this pool.
+  /// The body must be in this pool.
   void remove(Body& body) {
     const std::size_t slot = static_cast<Slotted&>(body).slot;
     slots_[slot].reset();

@@ -17,15 +17,15 @@
 
 namespace broadmark::scenes {
 
-/// Says how many bodies go where, relative to a point. Visits the parameters that only this brush
-/// has. Lengths are in world units.
+/// Determines the number of bodies, and their positions relative to a point. Visits the parameters
+/// that only this brush has. Lengths are in world units.
 class Brush : public Parametrised {
  public:
   /// The number of bodies, for bodies of this volume (scale³).
   [[nodiscard]] virtual double count(double body_volume) const = 0;
-  /// The place of body `index`, relative to the point.
+  /// The position of body `index`, relative to the point.
   [[nodiscard]] virtual Vec3 place(std::size_t index, Random&) const = 0;
-  /// Whether place() is random, so that calling it again gives another place.
+  /// Whether place() is random, so that another call gives another position.
   [[nodiscard]] virtual bool scatters() const { return false; }
 };
 
@@ -39,7 +39,7 @@ struct BrushEntry {
 
 std::vector<BrushEntry> brushEntries();
 
-/// What the bodies are like: the same for all brushes.
+/// The properties of the bodies: the same for all brushes.
 class Paint final : public Parametrised {
  public:
   Paint();
@@ -59,9 +59,9 @@ struct Stroke {
   std::size_t left_out = 0;  ///< bodies without room
 };
 
-/// The room that bodies take: their tight boxes, but for a touch. There is a hash grid for each
-/// power of two of box sizes, so that neither a floor under thousands of small bodies nor dust
-/// among large ones crowds a cell: O(1) per body unless sizes differ by orders of magnitude, and
+/// The space occupied by bodies: their tight boxes, minus a tolerance. There is a hash grid for
+/// each power of two of box sizes, so that neither a floor under thousands of small bodies nor dust
+/// among large bodies crowds a cell: O(1) per body unless sizes differ by orders of magnitude, and
 /// never more than a comparison with every box.
 class OccupiedSpace {
  public:
@@ -71,23 +71,23 @@ class OccupiedSpace {
   [[nodiscard]] bool overlaps(const AuthoredBody&) const;
 
  private:
-  /// Boxes by the cell of their lower corner: a hash of where it is, which others may share.
+  /// Boxes by a hash of their lower corner's cell; hashes may collide.
   using Grid = std::unordered_map<std::uint64_t, std::vector<Aabb>>;
 
   static bool overlapsIn(const Grid& grid, int exponent, const Aabb& box);
 
-  /// By the exponent of the least power of two above all edges of the boxes. Cells are twice as
+  /// By the exponent of the smallest power of two above all edges of the boxes. Cells are twice as
   /// large as that.
   std::map<int, Grid> grids_;
 };
 
-/// Bodies placed around the point `at`, `most` of them or fewer. Unless the paint allows overlaps,
-/// no tight box overlaps that of another placed body or `taken` by more than a touch: a brush that
-/// scatters tries other places, and a body without room is left out. The same arguments give the
-/// same bodies. O(placed). Throws InputError when the brush would place more than kMaxBodies.
+/// Up to `most` bodies placed around the point `at`. Unless the paint allows overlaps, no tight box
+/// overlaps that of another placed body or `taken` beyond the tolerance: a scattering brush tries
+/// other positions, and a body without room is left out. Deterministic. O(placed). Throws
+/// InputError if the brush would place more than kMaxBodies.
 Stroke paint(const Brush&, const Paint&, const Vec3& at, const OccupiedSpace& taken,
              std::size_t most = std::numeric_limits<std::size_t>::max());
-/// The same among the bodies that are `present`. O(present + placed).
+/// The same, among the `present` bodies. O(present + placed).
 Stroke paint(const Brush&, const Paint&, const Vec3& at, std::span<const AuthoredBody> present);
 
 }  // namespace broadmark::scenes

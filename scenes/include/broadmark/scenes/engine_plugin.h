@@ -1,6 +1,6 @@
-// Physics engines from outside: what a shared library exports so that `broadmark --plugin FILE` can
-// load it, as broadmark/plugin.h says it of algorithms. An engine's source file becomes one by a
-// line at its end:
+// Physics engines in plug-ins: the symbols that a shared library exports so that `broadmark
+// --plugin FILE` can load it, as broadmark/plugin.h describes for algorithms. A line at the end
+// makes a plug-in of an engine's source file:
 //
 //   BROADMARK_ENGINE_PLUGIN(broadmark::my_engine::engines)
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace broadmark::scenes {
 
-/// Under this name a library exports a Plugin<EngineEntry>.
+/// The symbol of an exported Plugin<EngineEntry>.
 inline constexpr char kEnginePluginSymbol[] = "broadmark_engine_plugin";
 
 }  // namespace broadmark::scenes

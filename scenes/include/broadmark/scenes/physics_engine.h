@@ -9,14 +9,14 @@
 
 namespace broadmark::scenes {
 
-/// How bodies move and collide; the same for all bodies of a world.
+/// Parameters of motion and collisions; the same for all bodies of a world.
 struct PhysicsSettings {
   double time_step = 1.0 / 30;  ///< seconds per step()
   std::int64_t substeps = 4;
   std::int64_t solver_iterations = 6;
   double friction = 0.6;      ///< Coulomb coefficient of every contact
   double restitution = 0;     ///< of every contact
-  double linear_damping = 0;  ///< share of velocity lost per second
+  double linear_damping = 0;  ///< fraction of velocity lost per second
   double angular_damping = 0.05;
   double max_angular_speed = 7;    ///< radians per second
   double sleep_threshold = 0.005;  ///< kinetic energy per mass below which a body may fall asleep
@@ -32,16 +32,16 @@ struct BodyDescription {
   Vec3 linear_velocity{};   ///< world units per second
   Vec3 angular_velocity{};  ///< radians per second
   std::uint8_t layer = 0;   ///< see setLayers()
-  std::uint32_t world = 0;  ///< bodies of different worlds never meet
+  std::uint32_t world = 0;  ///< bodies of different worlds never collide
 };
 
-/// One side of a plane, which bodies cannot leave: normal · point >= offset.
+/// A wall, on one side of a plane: normal · point >= offset.
 struct HalfSpace {
   Vec3 normal{};  ///< unit length, towards the free side
   float offset = 0;
 };
 
-/// A body of a PhysicsEngine, which owns it.
+/// A body, owned by a PhysicsEngine.
 class PhysicsBody {
  public:
   virtual ~PhysicsBody() = default;
@@ -51,9 +51,9 @@ class PhysicsBody {
   [[nodiscard]] virtual Vec3 linearVelocity() const = 0;
   [[nodiscard]] virtual Vec3 angularVelocity() const = 0;
 
-  /// Moves the body to another pose and wakes it.
+  /// Sets the pose and wakes the body.
   virtual void setPose(const Pose&) = 0;
-  /// Sets the velocities and wakes the body. Does nothing to a frozen one.
+  /// Sets the velocities and wakes the body. No effect on a frozen body.
   virtual void setVelocity(const Vec3& linear, const Vec3& angular) = 0;
 
   /// At rest until something touches it. A frozen body counts as asleep.
@@ -63,17 +63,17 @@ class PhysicsBody {
   virtual void freeze() = 0;
 };
 
-/// A world of bodies. Deterministic: the same calls give the same bits. Instances do not influence
-/// each other. Visits the parameters that only this engine has; their names must differ from those
-/// of the settings and of every scene.
+/// A world of bodies. Deterministic: the same calls give the same bits. Instances are independent.
+/// Visits the parameters that only this engine has; their names must differ from those of the
+/// settings and of every scene.
 class PhysicsEngine : public Parametrised {
  public:
-  /// Which layers push each other; by default all. Walls hold bodies of every layer. To be called
-  /// before there are bodies.
+  /// Sets the layers that push each other; by default all. Walls hold bodies of every layer. Must
+  /// be called before bodies are added.
   virtual void setLayers(const LayerMatrix&) = 0;
   /// Adds a body. The reference stays valid until the body is removed.
   virtual PhysicsBody& addBody(const BodyDescription&) = 0;
-  /// Removes a body of this engine, and wakes those that it touches.
+  /// Removes a body of this engine, and wakes the bodies that it touches.
   virtual void removeBody(PhysicsBody&) = 0;
   virtual void addWall(const HalfSpace&) = 0;
   /// Acceleration of all bodies. A change wakes them.

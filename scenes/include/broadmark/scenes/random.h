@@ -1,5 +1,5 @@
-// Random numbers that are the same on every machine: the standard defines the generator, and the
-// sampling is our own, because the standard's distributions differ between libraries.
+// Portable random numbers: the standard defines the generator, and the sampling is implemented
+// here, because the standard's distributions differ between libraries.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ class Random {
   double between(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform in the ball of this radius around the origin.
   Vec3 inBall(double radius) {
-    // Rejection from the cube: exactly uniform, and no library function that might round
+    // Rejection from the cube: exactly uniform, without library functions that might round
     // differently.
     for (;;) {
       const double x = 2 * uniform() - 1;
@@ -35,7 +35,7 @@ class Random {
     }
   }
 
-  /// Puts the elements into random order.
+  /// Shuffles the elements.
   template <class Element>
   void shuffle(std::vector<Element>& elements) {
     for (std::size_t left = elements.size(); left > 1; --left) {

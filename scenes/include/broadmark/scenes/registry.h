@@ -1,5 +1,5 @@
-// The built-in scenes and physics engines, in the order of the lists in CMakeLists.txt; engines
-// from elsewhere; and object types.
+// The built-in scenes and physics engines, in the order of the lists in CMakeLists.txt; engines of
+// plug-ins; and object types.
 #pragma once
 
 #include <cstddef>
@@ -29,19 +29,19 @@ struct EngineEntry {
 struct ObjectType {
   struct {
     std::string id;    ///< "cubes"
-    std::string name;  ///< as recordings state it: "Cubes"
+    std::string name;  ///< as in recordings: "Cubes"
   } listing;
   /// The shape of body `index`. Its size is proportional to `scale`.
   Shape (*shape)(std::size_t index, double scale, Random&);
 };
 
 std::vector<SceneEntry> sceneEntries();
-/// The built-in ones, then those added.
+/// The built-in engines, then those added.
 std::vector<EngineEntry> engineEntries();
 std::vector<ObjectType> objectTypes();
 
-/// Adds an engine for the rest of the process. Its id must be new. Not while other threads make
-/// simulations: any of them may choose it from now on.
+/// Adds an engine for the rest of the process. Its id must be new. Not thread-safe with the
+/// creation of simulations, any of which may select the engine from now on.
 void addEngine(EngineEntry);
 
 }  // namespace broadmark::scenes

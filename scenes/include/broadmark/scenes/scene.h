@@ -1,4 +1,4 @@
-// The interface of a scene: which bodies there are, which forces act, what happens in each frame.
+// The interface of a scene: its bodies, its forces, and its actions in each frame.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace broadmark::scenes {
 
-/// What a scene acts on. Valid during the call that it is handed to.
+/// The objects that a scene acts on. Valid during the call with this argument.
 struct Stage {
   const Settings& settings;
   const ObjectType& object_type;
@@ -21,9 +21,9 @@ struct Stage {
   Bodies& bodies;
   Random& random;
 
-  /// Body `id`, at rest at the origin, `size` times as large as usual.
+  /// Body `id`, at rest at the origin, of `size` times the usual size.
   [[nodiscard]] BodyDescription describeBody(std::size_t id, double size = 1) const;
-  /// The same at a random place where it is inside the world, however it is turned.
+  /// The same at a random place where it is inside the world in any rotation.
   [[nodiscard]] BodyDescription describeAnywhere(std::size_t id, double size = 1) const;
 };
 
@@ -31,33 +31,33 @@ struct Stage {
 /// scene has.
 class Scene : public Parametrised {
  public:
-  /// Changes the defaults of shared parameters that do not suit this scene.
+  /// Adapts the defaults of shared parameters to this scene.
   virtual void setDefaults(Settings&) const {}
 
-  /// Says what is special about the scene: bodies that are absent at times, pairs that are not
-  /// wanted, another world. Called whenever the parameters may have changed.
+  /// Sets the scene's special properties: absent bodies, unwanted pairs, another world. Called
+  /// whenever the parameters may have changed.
   virtual void describe(const Settings&, SceneInfo&) const {}
 
-  /// Which layers push each other. By default those that collide.
+  /// The layers that push each other. By default the colliding layers.
   [[nodiscard]] virtual LayerMatrix pushing(const SceneInfo& info) const {
     return info.filter.matrix();
   }
 
-  /// Called before the first call of place(): decides what concerns all bodies.
+  /// Called before the first call of place(): prepares what concerns all bodies.
   virtual void prepare(const Settings&, Random&) {}
 
-  /// Says where body `index` starts, and with which velocity. By default at a uniformly random
-  /// place in a ball around the origin, unturned, with a random velocity.
+  /// Sets the initial pose and velocity of body `index`. By default a uniformly random position in
+  /// a ball around the origin, unrotated, with a random velocity.
   virtual void place(std::size_t index, BodyDescription& body, const Settings&, Random&);
 
-  /// Brings on the bodies of the initial pose. By default all, in order, as place() says.
+  /// Adds the bodies of the initial pose. By default all, in order, by place().
   virtual void populate(Stage& stage);
 
   /// Called when all bodies are in their initial pose. By default gravity points down.
   virtual void start(Stage& stage);
 
-  /// Called after frame `frame`, 1 or later, when the next one is asked for. Bodies that it adds
-  /// move before that is recorded.
+  /// Called after frame `frame`, 1 or later, when the next one is requested. Bodies that it adds
+  /// move before that frame is recorded.
   virtual void act(Stage&, std::uint32_t /*frame*/) {}
 };
 

@@ -19,31 +19,31 @@ namespace broadmark::scenes {
 /// Ids of bodies, ascending, each once.
 using BodyIds = std::vector<std::uint32_t>;
 
-/// Changes a scene in steps that can be undone. A step keeps only the bodies that it changed, added
-/// or deleted, or the value of the scene.
+/// Changes a scene in steps that can be undone. A step stores only the bodies that it changed,
+/// added or deleted, or the changed property of the scene.
 ///
-/// Every edit acts on the selected bodies. An edit that changes nothing is not a step. An edit that
-/// would make a body invalid throws InputError and changes nothing. Undo and redo also restore the
+/// Every edit acts on the selected bodies. An edit without effect is not a step. An edit that would
+/// make a body invalid throws InputError and changes nothing. Undo and redo also restore the
 /// selection. O(selected bodies); adding and deleting O(all bodies).
 class SceneEditor {
  public:
-  /// Most memory of all steps together. Beyond it the oldest steps are forgotten, but never the
+  /// Memory limit of all steps together. Beyond it the oldest steps are dropped, but never the
   /// latest.
   static constexpr std::size_t kHistoryBytes = std::size_t{256} << 20;
 
   explicit SceneEditor(AuthoredScene scene = {}, std::size_t history_bytes = kHistoryBytes);
 
   [[nodiscard]] const AuthoredScene& scene() const { return scene_; }
-  /// A number for this state of the scene: undo brings back the number, too.
+  /// Identifies this state of the scene: undo restores it, too.
   [[nodiscard]] std::uint64_t revision() const;
-  /// Whether the scene has changed since the last markSaved(), or since it was handed in.
+  /// Whether the scene has changed since the last markSaved(), or since construction.
   [[nodiscard]] bool isModified() const { return revision() != saved_revision_; }
   void markSaved() { saved_revision_ = revision(); }
 
   // ---- Selection: not a step
 
   [[nodiscard]] const BodyIds& selection() const { return *selection_; }
-  /// In any order. Throws InputError when there is no such body.
+  /// In any order. Throws InputError if there is no such body.
   void select(BodyIds bodies);
   void selectAll();
   void selectNone() { select({}); }
@@ -58,11 +58,11 @@ class SceneEditor {
   void add(std::vector<AuthoredBody> bodies);
   void erase();
   /// Appends copies of the selected bodies, moved by `offset`, and selects them. Copies of a group
-  /// are a group of their own.
+  /// form a new group.
   void duplicate(const Vec3& offset);
   /// Edits each selected body; `verb` names the step: "freeze".
   void change(std::string_view verb, const std::function<void(AuthoredBody&)>& edit);
-  /// Gives a property of the selected bodies this value.
+  /// Sets a property of the selected bodies.
   template <class Value>
   void set(std::string_view verb, Value AuthoredBody::*property,
            const std::type_identity_t<Value>& value) {
@@ -70,26 +70,26 @@ class SceneEditor {
   }
   void transform(std::string_view verb, const Transformation& by);
   void move(const Vec3& by);
-  /// Scales places and sizes about the common centre.
+  /// Scales positions and sizes about the common centre.
   void scale(float factor);
-  /// Moves each selected body along an axis (0, 1, 2) until its tight box begins, ends or has its
-  /// middle where that of all of them together does.
+  /// Moves each selected body along an axis (0, 1, 2) until the lower bound, middle or upper bound
+  /// of its tight box is that of all of their boxes together.
   enum class Alignment { low, middle, high };
   void align(std::size_t axis, Alignment alignment);
   /// Sets the edges of boxes, and the diameter of spheres to the first of the three.
   void setSize(const Vec3& edges);
-  /// Spheres become cubes whose edge is the diameter; boxes become spheres whose diameter is the
-  /// mean edge.
+  /// Spheres become cubes with the diameter as edge; boxes become spheres with the mean edge as
+  /// diameter.
   void makeBoxes();
   void makeSpheres();
-  /// Makes a group of the selected bodies, if they are several; they leave those that they were in.
+  /// Groups the selected bodies, if they are several; they leave their former groups.
   void group();
   void ungroup();
-  // These change the scene as a whole.
+  // Edits of the scene as a whole.
   void setName(std::string name);
   void setWorld(const Aabb& world);
-  /// States these parameters (see AuthoredParameters). Others keep their values, but those of an
-  /// engine that is no longer chosen are dropped.
+  /// States these parameters (see AuthoredParameters). Others keep their values, but those of a
+  /// deselected engine are dropped.
   void setParameters(const ParameterValues& values);
 
   // ---- History
@@ -99,17 +99,17 @@ class SceneEditor {
   /// The name of the step that undo() would undo: "move 12 bodies"; "": none.
   [[nodiscard]] std::string undoName() const;
   [[nodiscard]] std::string redoName() const;
-  // Without a step to undo or redo they do nothing.
+  // No effect without a step to undo or redo.
   void undo();
   void redo();
-  /// Memory of all steps at present.
+  /// Present memory of all steps.
   [[nodiscard]] std::size_t historyBytes() const;
 
  private:
   using SharedIds = std::shared_ptr<const BodyIds>;
   struct Step {
     std::string name;
-    /// Swaps what the scene has with what this holds.
+    /// Swaps the step's contents with the scene's.
     std::function<void(AuthoredScene&)> exchange;
     std::size_t bytes = 0;
     SharedIds before = {};       ///< the selection before the step
@@ -121,7 +121,7 @@ class SceneEditor {
   void changeScene(std::string name, Value AuthoredScene::*property, Value value,
                    const std::string& fault);
   void addCopies(std::string_view verb, std::vector<AuthoredBody> bodies);
-  /// Adds the bodies that are `absent`, or removes these if there are none.
+  /// Adds the bodies in `absent`, or removes these if it is empty.
   void changePresence(std::string_view verb, SharedIds ids, std::vector<AuthoredBody> absent,
                       SharedIds selected_after);
   void perform(Step step);
@@ -129,10 +129,10 @@ class SceneEditor {
   AuthoredScene scene_;
   SharedIds selection_;
   std::size_t history_bytes_;
-  std::deque<Step> history_;  ///< the first done_ are done, the others undone
+  std::deque<Step> history_;  ///< the first done_ steps are done, the others undone
   std::size_t done_ = 0;
   std::uint64_t last_revision_ = 0;
-  std::uint64_t first_revision_ = 0;  ///< before the oldest step that is kept
+  std::uint64_t first_revision_ = 0;  ///< before the oldest stored step
   std::uint64_t saved_revision_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The parameters that all scenes share.
+// The parameters shared by all scenes.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace broadmark::scenes {
 
 /// Lengths are in world units. The world is a cube of side (objects · scale³ / density)^(1/3), so a
-/// scene looks alike at every size.
+/// scene has the same density at every size.
 struct Settings {
   Settings();
 
@@ -22,7 +22,7 @@ struct Settings {
   double density = 0.1;
   double scale = 1;
   double mass = 1;
-  double initial_radius = 0.45;  ///< of the ball that bodies start in, per side
+  double initial_radius = 0.45;  ///< of the ball of initial positions, per side
   double initial_speed = 0.75;   ///< largest, in sides per second
   double gravity = 0.0981;       ///< in sides per second squared
   PhysicsSettings physics;

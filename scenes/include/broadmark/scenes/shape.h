@@ -22,10 +22,10 @@ struct SphereShape {
 /// The shape of a body around its centre.
 using Shape = std::variant<BoxShape, SphereShape>;
 
-/// The edges of a box along its own axes; of a sphere the diameter, three times.
+/// The edges of a box along its own axes; three times the diameter of a sphere.
 Vec3 edgesOf(const Shape&);
 
-/// The smallest axis-aligned box around the posed shape, with no margin: a turned box reaches
+/// The smallest axis-aligned box around the posed shape, with no margin: a rotated box extends
 /// |R|·half extents from its centre, a sphere its radius.
 Aabb tightBox(const Shape&, const Pose&);
 

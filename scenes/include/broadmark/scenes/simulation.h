@@ -1,5 +1,5 @@
-// Scenes as the rest of the program sees them: parameters in, frames out. Also their files of
-// parameters, and baking them into recordings.
+// The public interface of scenes: parameters in, frames out. Also their parameter files, and baking
+// into recordings.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,25 @@
 
 namespace broadmark {
 
-/// Most bodies of any scene, built-in or authored.
+/// Maximum number of bodies of any scene, built-in or authored.
 inline constexpr std::uint32_t kMaxBodies = 10'000'000;
-/// Most frames after the initial pose.
+/// Maximum number of frames after the initial pose.
 inline constexpr std::uint32_t kMaxFrames = 1'000'000;
 
 /// A built-in scene, for lists and help.
 struct SceneListing {
   std::string id;       ///< "freefall"
-  std::string name;     ///< as recordings state it: "FreeFall"
+  std::string name;     ///< as in recordings: "FreeFall"
   std::string summary;  ///< one sentence
 };
 std::vector<SceneListing> builtinScenes();
 
-/// What an engine does with the bodies of a scene.
+/// How an engine moves the bodies of a scene.
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
   passing,   ///< as above, but they pass through each other
-  scripted,  ///< rules of its own, which may ignore gravity, velocities and walls
-  replayed,  ///< nothing: the frames come from a recording
+  scripted,  ///< the engine's own rules, which may ignore gravity, velocities and walls
+  replayed,  ///< frames from a recording
 };
 
 /// A physics engine, for lists and help.
@@ -44,36 +44,36 @@ struct EngineListing {
   std::string id;  ///< "bullet"
   std::string summary;
   Dynamics dynamics = Dynamics::rigid;
-  std::string plugin;  ///< the library that it is from, as named on the command line; "": built in
+  std::string plugin;  ///< the library, as named on the command line; "": built in
 };
-/// The built-in ones, those that were added, then those that replay recordings.
+/// The built-in engines, the added ones, then those that replay recordings.
 std::vector<EngineListing> availableEngines();
 
-/// A kind of recording that can be written, for lists and help.
+/// A writable recording format, for lists and help.
 struct RecorderListing {
   std::string id;  ///< "aabbs": also the extension of its recordings
   std::string summary;
-  std::string folder;  ///< the original's name for a folder of such recordings
+  std::string folder;  ///< the original's folder name for such recordings
 };
 std::vector<RecorderListing> builtinRecorders();
 
-/// The engine's own parameters. They are added to those of a scene; of an engine that replays
-/// recordings they replace them. Throws InputError for an unknown id.
+/// The engine's own parameters. They are added to those of a scene; those of a replay engine
+/// replace them. Throws InputError for an unknown id.
 std::unique_ptr<Parametrised> engineParameters(const std::string& id);
 
 /// A live physics simulation, frame by frame. Its parameters (objects, frames, seed, density,
 /// object_type, engine, …, the scene's own, and those of the chosen engine) take effect at the next
-/// rewind(), which starts the simulation again. Same parameters, same frames, bit for bit.
+/// rewind(), which restarts the simulation. Same parameters, same frames, bit for bit.
 class Simulation : public Parametrised, public FrameSource, public PoseSource {
  public:
   explicit Simulation(SceneListing listing) : listing_(std::move(listing)) {}
 
   /// Of a built-in scene; an authored one has the id kAuthoredSceneId.
   [[nodiscard]] const SceneListing& listing() const { return listing_; }
-  /// The file that it needs besides its parameters: a recording to replay, an authored scene; "":
-  /// none. Throws InputError when there is no such recording.
+  /// The input file besides the parameters: a recording to replay, an authored scene; "": none.
+  /// Throws InputError if there is no such recording.
   [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
-  /// The hash of what it needs besides its parameters; "": nothing. Throws InputError.
+  /// The hash of the input besides the parameters; "": none. Throws InputError.
   [[nodiscard]] virtual std::string inputHash() { return {}; }
 
  private:
@@ -81,7 +81,7 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
 };
 
 /// The simulation of a built-in scene with its default parameters. `scene` is its id or its name in
-/// recordings, upper or lower case; `engine` an engine's id ("": the scene's default). Throws
+/// recordings, case-insensitive; `engine` an engine's id ("": the scene's default). Throws
 /// InputError for an unknown name, and suggests the nearest.
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
                                            const std::string& engine = {});
@@ -89,46 +89,45 @@ std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
 /// The id in the listing of every authored scene. No built-in scene has it.
 inline constexpr std::string_view kAuthoredSceneId = "authored";
 
-// The "schema" of the JSON files that describe a built-in scene: a file of scene parameters, and
-// the sidecar of a baked recording. (That of an authored scene is scenes::kAuthoredSceneSchema.)
+// The "schema" of the JSON files for a built-in scene: a file of scene parameters, and the sidecar
+// of a baked recording. (For authored scenes see scenes::kAuthoredSceneSchema.)
 inline constexpr std::string_view kSceneParametersSchema = "broadmark-scene-parameters/1";
 inline constexpr std::string_view kBakeSchema = "broadmark-bake/1";
 
 /// Whether JSON with this schema describes a scene: one of the two above, or an authored scene.
 bool describesScene(std::string_view schema);
 
-/// The simulation that such a JSON text describes; an authored scene's, too. A parameter that is
-/// not stated keeps its default. `name`, the text's path if it has one, stands for it in messages.
-/// Throws InputError that names the key and what would be right.
+/// The simulation described by such a JSON text, built-in or authored. Unstated parameters keep
+/// their defaults. `name`, the text's path if any, is used in messages. Throws InputError with the
+/// key and what would be right.
 std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
 
-/// Scene and parameters as such a text; of an authored scene the whole document. Reading it back
-/// gives the same simulation.
+/// Scene and parameters as such a text; for an authored scene the whole document. Round-trips to
+/// the same simulation.
 std::string formatSceneParameters(Simulation&);
 
 /// Whether `path` is a complete recording baked with exactly these parameters and from an input
-/// with the present inputHash(): its sidecar says so, and the recording has the stated hash.
+/// with the present inputHash(), according to its sidecar, and has the hash stated there.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
-/// Whether `path` is a recording that was baked, whatever it was baked from: it has the hash that
-/// its sidecar states.
+/// Whether `path` is an intact baked recording, of any origin: it has the hash stated in its
+/// sidecar.
 bool isIntact(const std::filesystem::path& path);
 
-/// The hash that a recording's sidecar states; nothing without a sidecar, or if the file there is
-/// another kind of file. Throws InputError when a sidecar states no hash.
+/// The hash stated in a recording's sidecar; nothing without a sidecar, or if the file there has
+/// another schema. Throws InputError if a sidecar states no hash.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
-/// What a recording's sidecar says but for the hash, as JSON; "" without a sidecar. Throws
-/// InputError.
+/// A recording's sidecar without the hash, as JSON; "" without a sidecar. Throws InputError.
 std::string bakedParameters(const std::filesystem::path& recording);
 
 /// Throws InputError if a recording at one of these paths cannot hold the scene, or if bake() would
-/// overwrite input(), its sidecar, or one recording's sidecar with another's.
+/// overwrite input(), its sidecar, or another recording's sidecar.
 void requireBakeable(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
 
-/// Simulates all frames once into recordings at `paths`, each by the recorder that its extension
-/// names. Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with all
-/// parameters and the recording's hash. Returns false when `progress` stopped it; then no file is
-/// left. Throws InputError.
+/// Simulates all frames once into recordings at `paths`, each in the format of its extension.
+/// Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with all parameters
+/// and the recording's hash. Returns false when `progress` stopped it; then no file is left. Throws
+/// InputError.
 bool bake(Simulation& simulation, const std::vector<std::filesystem::path>& paths,
           const FrameProgress& progress = {});
 

@@ -1,23 +1,23 @@
-// Moving, turning and scaling bodies together, about a point.
+// Joint translation, rotation and scaling of bodies about a point.
 #pragma once
 
 #include "broadmark/scenes/authored_scene.h"
 
 namespace broadmark::scenes {
 
-/// What becomes of bodies: they are scaled about a centre, then turned about it, then moved.
+/// Scales bodies about a centre, then rotates them about it, then translates them.
 struct Transformation {
   Vec3 centre{};
-  Quaternion axes{0, 0, 0, 1};  ///< of unit length: turns the world's axes to those of `scale`
+  Quaternion axes{0, 0, 0, 1};  ///< of unit length: rotates the world's axes to those of `scale`
   Vec3 scale{1, 1, 1};          ///< factors above 0
   Quaternion turn{0, 0, 0, 1};  ///< of unit length
   Vec3 move{};                  ///< in world units, along the world's axes
 };
 
-/// Where the body is after that.
+/// The pose after the transformation.
 Pose transformedPose(const AuthoredBody&, const Transformation&);
-/// Its shape after that. Boxes stay boxes and spheres stay spheres: each edge of a box becomes as
-/// long as scaling makes it, and a sphere takes the factor of its volume.
+/// The shape after the transformation. Each edge of a box grows by the factor in its direction. A
+/// sphere stays a sphere and grows by the geometric mean of the factors, as its volume requires.
 Shape transformedShape(const AuthoredBody&, const Transformation&);
 
 }  // namespace broadmark::scenes

@@ -1,12 +1,11 @@
-// How much slower the cases of one run are than those of another, at another time: from the same
-// frames.
+// Time ratios between the cases of two runs at different times, frame by frame.
 //
-// Each frame counts with its least time over the repetitions, since what disturbs a frame makes it
-// slower. Between two runs the machine changes, and all cases with it: a case's ratio is taken
-// relative to the drift, the median of the other cases' ratios, in logarithms. Cases on the same
-// recording took turns, so they share more of it. The interval covers the noise within the runs (a
-// block bootstrap over the frames; half samples of the repetitions), or what the other cases differ
-// from their drift by, whichever is more.
+// Each frame counts with its minimum over the repetitions, since disturbances only make it slower.
+// The machine's speed may differ between two runs, for all cases: a case's ratio is taken relative
+// to the drift, the median of the other cases' ratios, in logarithms. Cases on the same recording
+// ran alternately, so they share more of it. The interval covers the noise within the runs (a block
+// bootstrap over the frames; half samples of the repetitions), or the deviation of the other cases
+// from their drift, whichever is larger.
 #pragma once
 
 #include <optional>
@@ -19,17 +18,17 @@
 
 namespace broadmark {
 
-/// What is found of B against A; all but the first four only where runs are compared.
+/// The verdict on B against A; all but the first four only in comparisons of runs.
 enum class Verdict {
   same,          ///< the whole interval is within the margin
   faster,        ///< the whole interval is below 1
   slower,        ///< the whole interval is above 1
-  undecided,     ///< the interval is too wide to tell
-  regressed,     ///< slower, by more than is tolerated, or no longer ok
-  other_status,  ///< another status, but it was not ok before
-  not_ok,        ///< the same status in both, not ok: its times say nothing
+  undecided,     ///< the interval is too wide
+  regressed,     ///< slower by more than the tolerance, or no longer ok
+  other_status,  ///< another status; it was not ok before
+  not_ok,        ///< the same status in both, not ok: its times are meaningless
   not_timed,
-  other_conditions,  ///< refused: times under such conditions are not to be compared
+  other_conditions,  ///< refused: times under such conditions are not comparable
   other_recording,
   missing,  ///< only in A
   added,    ///< only in B
@@ -47,35 +46,34 @@ inline constexpr NameTable kVerdicts{{NamedValue{Verdict::same, "same"},
                                       {Verdict::missing, "missing"},
                                       {Verdict::added, "added"}}};
 
-/// Same, faster, slower or undecided. Same comes first: what is on one side of 1 may be so near
-/// that nobody cares.
+/// Same, faster, slower or undecided. Same has priority: a difference within the margin is
+/// negligible.
 Verdict verdictOn(const Interval& ratio, double margin);
 
 /// Times of B / times of A.
 struct RunRatio {
-  // Mean over the frames of their least times, in seconds.
+  // Mean over the frames of their minimum times, in seconds.
   double before = 0;
   double after = 0;
-  /// (after / before) / (1 + drift); not divided where fewer than three others tell the drift.
+  /// (after / before) / (1 + drift); undivided with fewer than three other cases.
   Estimate ratio;
-  /// How much slower the other cases were in B, in the median: 0.1 is 10 %. Nothing if there are no
-  /// others.
+  /// The median slowdown of the other cases in B: 0.1 is 10 %. Nothing without other cases.
   std::optional<double> drift;
 };
 
-/// A case in both runs. Several runs may stand for A.
+/// A case in both runs. A may consist of several runs.
 struct PairedCase {
   std::vector<const CaseResult*> before;
   const CaseResult* after = nullptr;
 };
 
-/// The ratios of all cases of two runs; nothing for a case without times. With three other cases or
-/// more these tell how much runs differ, else three baselines or more do; without either at least
-/// 8 % are taken for it, and the drift of one or two others widens the interval. The ratio of
-/// identical times is 1.
+/// The ratios of all cases of two runs; nothing for a case without times. The variation between
+/// runs is estimated from three other cases or more, else from three baselines or more; without
+/// either it is assumed to be at least 8 %, and the drift of one or two others widens the interval.
+/// The ratio of identical times is 1.
 std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> cases);
 
-/// The ratio of two cases of one run, whose repetitions took turns.
+/// The ratio of two cases of one run, with alternating repetitions.
 std::optional<RunRatio> ratioWithinRun(const CaseResult& before, const CaseResult& after);
 
 }  // namespace broadmark

@@ -1,5 +1,5 @@
-// What a scene is like: how dense, how crowded, how much of it moves, comes and goes, how large its
-// bodies are, which of them collide at all. These decide which broad phase suits it.
+// Properties of a scene: its density, changes, body sizes and collision filter. They decide which
+// broad phase suits it.
 #pragma once
 
 #include <cstdint>
@@ -13,39 +13,38 @@
 
 namespace broadmark {
 
-/// What is not as in the frame before, in bodies.
+/// Differences from the frame before, in bodies.
 struct Changes {
   double appeared = 0;
   double vanished = 0;
-  double changed = 0;  ///< these two, and those that moved
+  double changed = 0;  ///< these two, and moved bodies
 };
 
-/// Of frames of the same scene.
+/// Between two frames of the same scene.
 Changes changesBetween(std::span<const Aabb> before, std::span<const Aabb> boxes);
 
-/// Figures of one frame, of the bodies that are present. The extent of a body is the longest edge
-/// of its box. With no bodies, all are 0.
+/// Figures of one frame, for the bodies present. The extent of a body is the longest edge of its
+/// box. Without bodies, all are 0.
 struct FrameStatistics {
   std::uint32_t frame = 0;
   std::uint32_t bodies = 0;
   double density = 0;  ///< sum of all boxes' volumes / volume of the world (0 if that is 0)
   double pairs_per_body = 0;
-  std::optional<Changes> changes;  ///< frame 0 has none before
-  /// Of the bodies that were there in the frame before, too: the share of those whose box differs.
-  /// Nothing if there are none.
+  std::optional<Changes> changes;  ///< nothing for frame 0
+  /// The fraction of changed boxes among bodies also present in the frame before. Nothing if there
+  /// are none.
   std::optional<double> moving_share;
-  std::uint64_t outside = 0;  ///< bodies whose centre is outside the world
+  std::uint64_t outside = 0;  ///< bodies with their centre outside the world
   double min_extent = 0;
   double median_extent = 0;
   double max_extent = 0;
 };
 
-/// Of a frame with that many pairs, `before` being the boxes of the frame before it (as many; or
-/// none).
+/// For a frame with that many pairs; `before`: the boxes of the frame before it (as many; or none).
 FrameStatistics frameStatistics(const SceneInfo&, const Frame& frame, std::span<const Aabb> before,
                                 std::size_t pairs);
 
-/// Figures of successive frames together: means over the frames, unless stated otherwise.
+/// Aggregates over successive frames: means, unless stated otherwise.
 struct RangeStatistics {
   std::uint32_t first = 0;
   std::uint32_t last = 0;  ///< inclusive
@@ -54,34 +53,34 @@ struct RangeStatistics {
   std::uint32_t max_bodies = 0;
   double density = 0;
   double pairs_per_body = 0;
-  std::optional<Changes> changes;      ///< of the frames that have them
-  std::optional<double> moving_share;  ///< of the frames that have one
-  std::uint64_t max_outside = 0;       ///< most bodies outside in one frame
-  double min_extent = 0;               ///< of all frames
+  std::optional<Changes> changes;      ///< over the frames that have them
+  std::optional<double> moving_share;  ///< over the frames that have it
+  std::uint64_t max_outside = 0;       ///< maximum over the frames
+  double min_extent = 0;               ///< over all frames
   double median_extent = 0;            ///< the median of the frames' medians
-  double max_extent = 0;               ///< of all frames
+  double max_extent = 0;               ///< over all frames
 
   /// Extent of the largest body divided by that of the smallest; nothing if the latter is 0.
   [[nodiscard]] std::optional<double> sizeRatio() const;
 };
 
-/// Of at least one frame.
+/// Requires at least one frame.
 RangeStatistics rangeStatistics(std::span<const FrameStatistics> frames);
 
-/// What a collision filter makes of the bodies.
+/// Statistics of the bodies' collision filter.
 struct FilterStatistics {
   struct Layer {
     std::size_t layer = 0;
     double bodies = 0;  ///< present; mean per frame
   };
-  /// Two layers that collide, or one that collides with itself.
+  /// Two colliding layers, or one that collides with itself.
   struct LayerPair {
     std::size_t a = 0;
     std::size_t b = 0;  ///< >= a
     double pairs = 0;   ///< mean per frame
   };
-  std::vector<Layer> layers;           ///< those that any body is in
-  std::vector<LayerPair> layer_pairs;  ///< of these layers all that collide
+  std::vector<Layer> layers;           ///< layers with bodies
+  std::vector<LayerPair> layer_pairs;  ///< all pairs of these layers that collide
   std::uint32_t worlds = 1;
   std::uint32_t largest_world = 0;  ///< its number of bodies, present or not
   std::uint32_t tagged = 0;         ///< bodies with tags
@@ -90,19 +89,19 @@ struct FilterStatistics {
 /// A whole scene.
 struct SceneDescription {
   RangeStatistics initial;  ///< frame 0
-  /// Frames 1…F in successive parts whose lengths differ by 1 at most; none if F = 0.
+  /// Frames 1…F in successive parts with lengths that differ by at most 1; none if F = 0.
   std::vector<RangeStatistics> parts;
   std::optional<RangeStatistics> overall;  ///< frames 1…F
-  /// Of frames 1…F, or of frame 0 if there is no other; nothing where every pair is wanted.
+  /// Over frames 1…F, or frame 0 if there is no other; nothing where every pair is wanted.
   std::optional<FilterStatistics> filter = {};
 };
 
-/// Goes through all frames, with the memory of two of them. Frames 1…F are shown in `parts` parts,
-/// or one for each frame if there are fewer. Nothing if `progress` stopped it.
+/// Reads all frames, with the memory of two of them. Frames 1…F are divided into `parts` parts, or
+/// into single frames if there are fewer. Nothing if `progress` stopped it.
 std::optional<SceneDescription> describe(FrameSource&, int parts = 10,
                                          const FrameProgress& progress = {});
 
-/// A description with what it describes.
+/// A recording's identity and description.
 struct DescribedRecording {
   std::string path;
   std::string hash;
@@ -110,8 +109,8 @@ struct DescribedRecording {
   SceneDescription description;
 };
 
-/// As JSON ("schema": "broadmark-descriptions/1"). What comes and goes, and the filter, are told
-/// only of scenes that have them.
+/// As JSON ("schema": "broadmark-descriptions/1"). Changes and filter are omitted for scenes
+/// without them.
 std::string formatDescriptions(std::span<const DescribedRecording>);
 
 }  // namespace broadmark

@@ -1,9 +1,9 @@
-// Torture: algorithms in random ways on random worlds, until one of them does something wrong.
+// Torture: fuzzing of algorithms on random worlds against the oracle.
 //
-// A round is one case, drawn at random: an algorithm, its parameters, instruction set, threads and
-// kind of answer. It runs on many small worlds, one after the other in the same host, some of them
-// twice: once more, or with the bodies in another order. What goes wrong is shrunk. A round follows
-// from seed and number alone, so that any of them can be run again, in any order.
+// A round is one random case: an algorithm, its parameters, instruction set, threads and kind of
+// answer. It runs on many small worlds, one after the other in the same host, some of them twice:
+// unchanged, or with the bodies in another order. A fault is shrunk. A round depends only on seed
+// and number, so that any round can be repeated, in any order.
 #pragma once
 
 #include <compare>
@@ -20,14 +20,14 @@
 
 namespace broadmark {
 
-/// What can go wrong.
+/// Kinds of faults.
 enum class FaultKind {
   wrong_answer,
-  unsound,  ///< BroadPhase::validate() finds fault
+  unsound,  ///< BroadPhase::validate() reports a violation
   failure,  ///< an exception, or the end of the process
   hang,     ///< no answer within the host's limit
-  leak,     ///< each pass takes memory that it does not give back
-  unsteady  ///< any of these, but not again on the same world
+  leak,     ///< each pass allocates memory without freeing it
+  unsteady  ///< not reproducible on the same world
 };
 inline constexpr NameTable kFaultKinds{{NamedValue{FaultKind::wrong_answer, "wrong answer"},
                                         {FaultKind::unsound, "broken invariant"},
@@ -38,22 +38,22 @@ inline constexpr NameTable kFaultKinds{{NamedValue{FaultKind::wrong_answer, "wro
 
 struct Fault {
   FaultKind kind = FaultKind::wrong_answer;
-  std::uint32_t frame = 0;                   ///< in which it showed; of a leak the last one
+  std::uint32_t frame = 0;                   ///< where it was detected; for a leak the last one
   std::string text;                          ///< "1 missed, 0 false, 0 invalid"
-  std::vector<std::uint32_t> suspects = {};  ///< bodies of a pair that is wrong, if one is
+  std::vector<std::uint32_t> suspects = {};  ///< bodies of the wrong pair, if any
 };
 
-/// A fault, and the smallest recording that was found to show it.
+/// A fault, and the smallest recording found that shows it.
 struct TortureFinding {
-  Case run;
-  std::string world;  ///< what it was made as: "touching"
-  Fault fault;        ///< on the part; of an unsteady one on the world
+  Case test_case;
+  std::string world;  ///< its generator: "touching"
+  Fault fault;        ///< on the part; if unsteady on the world
   std::unique_ptr<IndexedFrames> frames;
-  Part part;             ///< of these frames
+  Part part;             ///< selects from these frames
   bool minimal = false;  ///< as ShrunkPart::minimal
 };
 
-/// What has been run.
+/// A combination of settings that was run.
 struct TortureKey {
   std::string algorithm;
   std::string isa;
@@ -66,8 +66,8 @@ struct TortureKey {
 struct TortureCount {
   std::uint64_t worlds = 0;
   std::uint64_t frames = 0;
-  std::uint64_t changing = 0;  ///< of the frames those in which bodies may come and go
-  std::uint64_t filtered = 0;  ///< likewise: not all pairs are wanted
+  std::uint64_t changing = 0;  ///< number of frames in which bodies may appear or disappear
+  std::uint64_t filtered = 0;  ///< number of frames with unwanted pairs
 
   TortureCount& operator+=(const TortureCount&);
 };
@@ -80,29 +80,29 @@ struct TortureRecording {
 };
 
 struct TortureOptions {
-  std::vector<Algorithm> algorithms;   ///< one at least, unless there is a case
-  std::optional<Case> only_case = {};  ///< which is run in all rounds
+  std::vector<Algorithm> algorithms;   ///< not empty unless only_case is set
+  std::optional<Case> only_case = {};  ///< used in all rounds
   std::uint64_t seed = 1;
   ExecutorFactory make_host = makeLocalHost;
-  std::vector<TortureRecording> given = {};  ///< small parts of them are worlds, too: "given"
-  bool only_given = false;                   ///< there is one at least
-  double most_shrink_seconds = 30;           ///< for a fault; then the best part so far is it
-  /// Whether another such fault of that algorithm is worth shrinking; empty: always. May be called
-  /// by several threads.
+  std::vector<TortureRecording> given = {};  ///< small parts of them serve as worlds, too: "given"
+  bool only_given = false;                   ///< requires a given recording
+  double max_shrink_seconds = 30;            ///< per fault; then the best part so far is reported
+  /// Whether another such fault of that algorithm is worth shrinking; empty: always. Called
+  /// concurrently.
   std::function<bool(const std::string& algorithm, FaultKind)> is_news = {};
   CancelQuery cancelled = {};
 };
 
-/// The names of all kinds of worlds, "given" aside.
+/// The names of all kinds of worlds, except "given".
 std::vector<std::string> tortureWorlds();
 
 struct TortureRound {
   TortureCoverage coverage;
-  std::optional<TortureFinding> finding;  ///< which ended the round
+  std::optional<TortureFinding> finding;  ///< the fault that ended the round
 };
 
-/// Runs one round. What cannot run here (a device, a number of bodies) counts for nothing. Throws
-/// Cancelled; then nothing of the round counts.
+/// Runs one round. Unsupported cases (a device, a number of bodies) are not counted. Throws
+/// Cancelled; then the round has no effect.
 TortureRound runTortureRound(const TortureOptions&, std::uint64_t number);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// A case: an algorithm with all that can vary about it.
+// A case: an algorithm with all of its settings.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace broadmark {
 
-/// What the answer for a frame is: all pairs, or only those that began or ended since the frame
+/// The kind of answer per frame: all pairs, or only those that began or ended since the frame
 /// before.
 enum class AnswerKind { pairs, events };
 inline constexpr NameTable kAnswerKinds{
@@ -24,18 +24,19 @@ struct Case {
   Isa isa = Isa::scalar;
   int threads = 1;
   std::string device = {};          ///< as ExecutionContext::device()
-  ParameterValues parameters = {};  ///< those that differ from the default
+  ParameterValues parameters = {};  ///< values that differ from the default
   AnswerKind answer = AnswerKind::pairs;
 };
 
-/// A case of `algorithm`; what it does not heed is left at its neutral value.
+/// A case of `algorithm`; settings that it ignores are left at neutral values.
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
               ParameterValues parameters, AnswerKind answer = AnswerKind::pairs);
 
-/// "bf-simd-mt/avx2/t4/events/key=value": what of a case does not depend on the recording.
+/// "bf-simd-mt/avx2/t4/events/key=value": the part of a case's id without the recording.
 std::string caseName(const Case&);
 
-/// A new instance of the case's algorithm with its parameters. Throws InputError for a bad one.
+/// A new instance of the case's algorithm with its parameters. Throws InputError for an invalid
+/// one.
 std::unique_ptr<BroadPhase> makeInstance(const Case&);
 
 }  // namespace broadmark

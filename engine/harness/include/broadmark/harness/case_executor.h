@@ -1,5 +1,5 @@
-// Where a case's instance lives, is called and is timed: in this process, or in a worker process
-// (worker_process.h). CaseRun judges what comes of it, and does not know which.
+// Executors create, call and time a case's instance: in this process, or in a worker process
+// (worker_process.h). CaseRun judges the results and does not distinguish them.
 #pragma once
 
 #include <cstdint>
@@ -19,44 +19,43 @@
 
 namespace broadmark {
 
-/// What an algorithm counted, by name.
+/// An algorithm's counters, by name.
 using Counts = std::map<std::string, std::uint64_t>;
 
-/// What running one frame gave.
+/// The result of running one frame.
 struct StepResult {
   FrameTimes times;
-  std::uint64_t pairs = 0;  ///< in the answer, duplicates included; of events all that there are
+  std::uint64_t pairs = 0;  ///< in the answer, duplicates included; or the number of events
 };
 
-/// Measurements of a host's passes; those of memory are missing where its process has other work.
+/// Measurements of a host's passes; memory is missing where its process has other work.
 struct PassReport {
   std::optional<std::uint64_t> heap_bytes;  ///< allocated and not freed after the last stop()
   std::optional<std::uint64_t> peak_bytes;  ///< growth of the peak of memory by the first pass
-  ProcessorCounts processor;  ///< of the four phases of all frames; nothing before stop()
-  bool pinned = false;        ///< each thread had a core of its own, to which it was bound
+  ProcessorCounts processor;  ///< over the four phases of all frames; nothing before stop()
+  bool pinned = false;        ///< each thread was bound to its own core
 };
 
 /// Holds at most one instance of a case's algorithm, and calls it. Its frames say what changed.
 ///
-/// Every call throws what the algorithm throws. A host outside this process also throws HostError
-/// when that ended, HardLimitError when a call took too long, and Cancelled; then the instance is
-/// gone.
+/// Every call forwards the algorithm's exceptions. A host outside this process also throws
+/// HostError when that process ended, HardLimitError when a call took too long, and Cancelled; then
+/// the instance is gone.
 class CaseExecutor {
  public:
   virtual ~CaseExecutor() = default;
 
-  /// Makes a fresh instance at the initial pose. Returns how long it took to initialise, in
-  /// nanoseconds. Throws UnsupportedError for what the processor or the number of bodies forbids,
-  /// and InputError for a device that does not exist.
+  /// Makes a fresh instance at the initial pose. Returns the initialisation time in nanoseconds.
+  /// Throws UnsupportedError for limits of the processor or the number of bodies, and InputError
+  /// for a device that does not exist.
   virtual std::int64_t start(const SceneInfo& scene, const Frame& first) = 0;
   /// Runs the four phases on the next frame.
   virtual StepResult step(const Frame& frame) = 0;
-  /// Frees the instance, if there is one.
+  /// Destroys the instance, if any.
   virtual void stop() = 0;
 
-  // Of the frame that was run last. Only between start() and stop().
-  // The first two where the case's answer is pairs, the third where it is events: these are there
-  // for the initial pose, too.
+  // For the frame that was run last. Only between start() and stop(). The first two require an
+  // answer of pairs, the third one of events; events exist for the initial pose, too.
   virtual PairDigest digest() = 0;
   /// Valid until the next call.
   virtual PairRuns answer() = 0;
@@ -68,22 +67,23 @@ class CaseExecutor {
   /// As BroadPhase::validate().
   virtual std::string validate() = 0;
 
-  /// Of the last pass.
+  /// For the last pass.
   [[nodiscard]] const PassReport& report() const { return report_; }
 
  protected:
   PassReport report_;
 };
 
-/// A host in this process. All passes share one Execution: threads, a device's context and its
-/// kernels are made once. Every call into the algorithm holds its traits' exclusive use; waiting
-/// for that is not timed.
+/// A host in this process. All passes share one ExecutionContext: threads, a device's context and
+/// its kernels are made once. Every call into the algorithm holds its traits' exclusive use; the
+/// wait for that is not timed.
 class InProcessExecutor final : public CaseExecutor {
  public:
-  /// With `pin`, each of the case's threads is bound to a core of its own, chosen anew for every
-  /// pass; unless they are more than the cores, or a device's driver has threads, too. That goes
-  /// for the calling thread as well, which so stays: for a process that does nothing else.
-  explicit InProcessExecutor(Case run, bool pin = false) : case_(std::move(run)), pin_(pin) {}
+  /// With `pin`, each of the case's threads, the calling thread included, is bound to its own core,
+  /// chosen again for every pass; unless there are too few cores, or a device's driver has threads,
+  /// too. The calling thread stays bound: for a process without other work.
+  explicit InProcessExecutor(Case test_case, bool pin = false)
+      : case_(std::move(test_case)), pin_(pin) {}
   ~InProcessExecutor() override;
   InProcessExecutor(const InProcessExecutor&) = delete;
   InProcessExecutor& operator=(const InProcessExecutor&) = delete;
@@ -99,7 +99,7 @@ class InProcessExecutor final : public CaseExecutor {
   RecordedDrawing structure() override;
   std::string validate() override;
 
-  /// The instance: to call its phases one by one, as tests do. Only between start() and stop().
+  /// The instance, for calls of single phases in tests. Only between start() and stop().
   BroadPhase& instance() { return *instance_; }
 
  private:
@@ -111,20 +111,20 @@ class InProcessExecutor final : public CaseExecutor {
   Case case_;
   bool pin_;
   std::vector<int> usable_cores_;  ///< before any thread was pinned
-  // From the first start() on. The counters come first: they count the threads made after them.
+  // Set by the first start(). Counters before threads: they count threads started after them.
   std::optional<ProcessorCounters> processor_;
   std::optional<ExecutionContext> execution_;
   std::unique_ptr<BroadPhase> instance_;
-  std::uint32_t bodies_ = 0;  ///< of its scene
+  std::uint32_t bodies_ = 0;  ///< of the algorithm's scene
   PairRuns answer_;
   PairEvents events_;
 };
 
-/// Asked now and then during long work; true ends it.
+/// Polled during long work; true ends the work.
 using CancelQuery = std::function<bool()>;
 
-/// Makes the host of a case. A host that may wait for long gives up, and throws Cancelled, soon
-/// after `cancelled` is true.
+/// Makes the host of a case. A host with long waits throws Cancelled soon after `cancelled` returns
+/// true.
 using ExecutorFactory =
     std::function<std::unique_ptr<CaseExecutor>(const Case&, CancelQuery cancelled)>;
 

@@ -1,4 +1,4 @@
-// What a case leaves behind: its times and its verdict.
+// The results of a case: its times and its status.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ namespace broadmark {
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
-  ProcessorCounts processor = {};  ///< sums over the frames' four phases
+  ProcessorCounts processor = {};  ///< sums over the four phases of all frames
 };
 
-/// What is counted in each frame: pairs in the answer (of events: that began or ended), bodies
-/// whose boxes are not those of the frame before, and wrong pairs as in FrameDifference.
+/// What is counted in each frame: pairs in the answer (for events: begun or ended), bodies with
+/// boxes that differ from the frame before, and wrong pairs as in FrameDifference.
 enum class FrameCount { pairs, changed_bodies, missed, false_pairs, allowed_extra, invalid };
 inline constexpr NameTable kFrameCounts{{NamedValue{FrameCount::pairs, "pairs"},
                                          {FrameCount::changed_bodies, "changed_bodies"},
@@ -43,15 +43,14 @@ struct RecordingReference {
   SceneInfo scene;
   std::optional<std::uint64_t> seed;  ///< nothing for a recording from elsewhere
   std::string hash;
-  std::string path;                  ///< "" when it was simulated for this run
-  ParameterValues scene_parameters;  ///< all of them, when it was simulated
-  ParameterValues swept = {};        ///< of those, what tells it from other recordings of its run
-  /// How it was read, where that is not the default: as swept boxes; of an import also which
-  /// elements of a mesh, …
+  std::string path;                  ///< "" if simulated for this run
+  ParameterValues scene_parameters;  ///< all of them, if simulated
+  ParameterValues swept = {};        ///< where it differs from other recordings of its run
+  /// Non-default reading options: as swept boxes; for an import also the mesh elements, …
   ParameterValues reading = {};
 };
 
-/// How many bodies were present in the frames that were run.
+/// The number of bodies present in the frames that were run.
 struct Population {
   double mean = 0;
   std::uint64_t max = 0;
@@ -63,14 +62,14 @@ struct CaseResult {
   std::string algorithm;
   std::string family;
   Isa isa = Isa::scalar;
-  bool vectorised = false;  ///< whether the algorithm is vectorised, so that `isa` means something
+  bool vectorised = false;  ///< whether `isa` applies
   int threads = 1;
-  std::string device;          ///< the compute device asked for, as ExecutionContext::device()
-  std::string plugin;          ///< the file that the algorithm was loaded from; "": built in
+  std::string device;          ///< as requested, see ExecutionContext::device()
+  std::string plugin;          ///< the algorithm's plug-in file; "": built in
   ParameterValues parameters;  ///< all, defaults included
   AnswerKind answer = AnswerKind::pairs;
   Conditions conditions;
-  std::size_t environment = 0;  ///< where it ran: one of Results::environments
+  std::size_t environment = 0;  ///< index in Results::environments
 
   Status status = Status::ok;
   std::string reason;  ///< for every status but ok
@@ -78,34 +77,34 @@ struct CaseResult {
   // As FrameCount::pairs.
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
-  std::optional<Population> bodies;  ///< nothing where nobody is ever absent
-  bool checked = false;              ///< when false, the counts of wrong pairs mean nothing
-  /// Of each frame, over all repetitions the most of each kind. Empty in results/1.
+  std::optional<Population> bodies;  ///< nothing where no body is ever absent
+  bool checked = false;              ///< if false, the counts of wrong pairs are meaningless
+  /// Per frame, the maxima over all repetitions. Empty in results/1.
   std::vector<FrameCounts> frames;
-  // Sums of those.
+  // Sums over the frames.
   std::uint64_t missed_count = 0;
   std::uint64_t false_count = 0;
   std::uint64_t allowed_extra_count = 0;
   std::uint64_t invalid_count = 0;
-  std::vector<FrameDifference> differences;  ///< of the frames that are mismatches
+  std::vector<FrameDifference> differences;  ///< for each mismatched frame
   std::optional<std::uint64_t> peak_bytes;   ///< as PassReport::peak_bytes
-  /// The algorithm's own counts of work, mean per frame.
+  /// The algorithm's work counters, mean per frame.
   std::map<std::string, double> counters;
-  /// What it counted once, in the first initialisation.
+  /// Counters of the first initialisation.
   std::map<std::string, std::uint64_t> setup;
 
   std::vector<Repetition> repetitions;
 
   /// The total times in seconds, per repetition.
   [[nodiscard]] Summary summary() const;
-  /// The mean of a phase per frame, over all repetitions; nothing if there is no frame.
+  /// The mean of a phase per frame, over all repetitions; nothing without frames.
   [[nodiscard]] std::optional<double> meanSeconds(Phase phase) const;
-  /// The mean per frame, over the repetitions in which it was known; nothing if there is none.
+  /// The mean per frame, over the repetitions that have it; nothing if none has.
   [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
-  /// How many frames were wrong in some repetition.
+  /// The number of frames that were wrong in some repetition.
   [[nodiscard]] std::size_t mismatchedFrames() const;
-  /// Whether it ran as often as was asked for, or ended by its status. A run that was interrupted
-  /// leaves cases that did not.
+  /// Whether it ran all requested repetitions, or ended by its status. An interrupted run leaves
+  /// incomplete cases.
   [[nodiscard]] bool isComplete() const;
 };
 

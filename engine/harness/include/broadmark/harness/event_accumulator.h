@@ -1,4 +1,4 @@
-// The set of pairs that events lead to, frame by frame.
+// Accumulates events into a set of pairs.
 #pragma once
 
 #include <cstddef>
@@ -9,36 +9,35 @@
 
 namespace broadmark {
 
-/// Keeps the pairs that have begun and not ended. For who is told events and wants all pairs:
-/// the one who checks them, for instance.
+/// Reconstructs the pair set from begin and end events; used by the checker.
 class EventAccumulator {
  public:
   EventAccumulator() = default;
   EventAccumulator(EventAccumulator&&) = default;
   EventAccumulator& operator=(EventAccumulator&&) = default;
 
-  /// No pair has begun.
+  /// Empties the set.
   void clear();
-  /// Takes the events of the next frame, of a scene with that many bodies. O(k + e log ek), k pairs
-  /// and e events; O(1) if there is none.
+  /// Applies the events of the next frame, of a scene with that many bodies. O(k + e log ek), k
+  /// pairs and e events; O(1) without events.
   void apply(const PairEvents& events, std::size_t bodies);
 
-  /// All pairs now, ascending. Valid until the next call of clear() or apply().
+  /// All present pairs, ascending. Valid until the next call of clear() or apply().
   [[nodiscard]] PairRuns pairs() const { return {&run_, 1}; }
-  /// Of the last frame's events those that cannot be, each pair once, ascending: it began though it
-  /// was there, ended though it was not, came more than once, or is none (a >= b, or a body that
-  /// does not exist). What ended and began in one frame is left as it was.
+  /// The impossible events of the last frame, each pair once, ascending: it began though present,
+  /// ended though absent, occurred repeatedly, or is invalid (a >= b, or a body that does not
+  /// exist). A pair that ended and began in one frame keeps its state.
   [[nodiscard]] PairRun impossible() const { return impossible_; }
 
  private:
   std::vector<Pair> pairs_;  ///< ascending
   PairRun run_;              ///< all of them
   std::vector<Pair> impossible_;
-  // Of the present frame, ascending.
+  // For the present frame, ascending.
   std::vector<Pair> began_;
   std::vector<Pair> ended_;
   std::vector<Pair> next_;
-  std::vector<std::pair<Pair, bool>> events_;  ///< whether it ends
+  std::vector<std::pair<Pair, bool>> events_;  ///< with true for an end event
 };
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// The timed phases of a frame, and how long each took.
+// The timed phases of a frame, and their durations.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace broadmark {
 
-/// The timed phases of a frame. A phase names the call, not the work: only the total compares
-/// across algorithm families. Upload and download are the parts of the four calls before them that
-/// went into copying to and from a compute device; without a device they are 0.
+/// The timed phases of a frame. A phase names the call, not the work: only the total is comparable
+/// across algorithm families. Upload and download are the times within the four calls before them
+/// that were spent on copies to and from a compute device; without a device they are 0.
 enum class Phase {
   update_objects,
   clean_cache,
@@ -19,7 +19,7 @@ enum class Phase {
   download,
   total
 };
-/// All of them, in order.
+/// All phases, in order.
 inline constexpr NameTable kPhases{{NamedValue{Phase::update_objects, "update_objects"},
                                     {Phase::clean_cache, "clean_cache"},
                                     {Phase::update_structures, "update_structures"},

@@ -1,4 +1,4 @@
-// How much memory this process may take.
+// Memory limits of this process.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@ namespace broadmark {
 /// A line of /proc/self/status in bytes, such as "VmHWM"; nothing if there is no such line.
 std::optional<std::uint64_t> statusBytes(const char* key);
 
-/// Beyond so many bytes of its own this process, and what it starts, gets no memory
-/// (std::bad_alloc). A lower limit that there is stays. `for_good`: nothing raises it again. Not in
-/// builds with sanitizers, which hold terabytes from the start.
+/// Limits the private memory of this process and its children; beyond it, allocations fail
+/// (std::bad_alloc). Keeps a lower limit if there is one. `for_good`: the limit cannot be raised
+/// again. No effect in builds with sanitizers, which reserve terabytes from the start.
 void limitMemory(std::uint64_t bytes, bool for_good);
 
-/// What the machine has.
+/// The machine's memory in bytes.
 std::uint64_t machineMemory();
 
 }  // namespace broadmark

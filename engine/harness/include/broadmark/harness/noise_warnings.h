@@ -1,4 +1,4 @@
-// How quiet the machine is, and what else may spoil the times of a case: told in words.
+// Warnings about other load and whatever else may disturb the times of a case.
 #pragma once
 
 #include <chrono>
@@ -11,18 +11,18 @@
 
 namespace broadmark {
 
-/// The machine as it is while this process waits: all that is busy then is the work of others.
+/// The machine's state while this process waits: all load then is from others.
 struct MachineState {
-  std::vector<int> usable_cores;  ///< that this process may use
+  std::vector<int> usable_cores;  ///< by this process
   BusyShares busy;
   CoreSiblings siblings;
-  bool turbo = false;  ///< cores may go faster than their nominal frequency, while they are cool
+  bool turbo = false;  ///< clock speed varies with temperature
 };
 
-/// Watches the machine for a moment, in which the calling thread sleeps.
+/// Samples the machine for a moment; the calling thread sleeps through it.
 MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders& = {});
 
-/// What may disturb the times of a case, a sentence each; nothing of what the system does not tell.
+/// Possible disturbances of a case's times, a sentence each; unreported conditions give none.
 std::vector<std::string> noiseWarnings(const Environment&, const MachineState&, const Case&);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// What the right answer is, and how a given one differs from it.
+// The right answers, and their differences from given ones.
 #pragma once
 
 #include <cstddef>
@@ -17,19 +17,18 @@
 
 namespace broadmark {
 
-/// The right answer for any boxes, computed once and kept while it fits in a budget. An answer is
-/// found again by the boxes' hash and the filter: two scenes may share an oracle, and equal frames
-/// share an answer.
+/// The right answer for any boxes, cached within a budget. The key is the boxes' hash and the
+/// filter: two scenes may share an oracle, and equal frames share an answer.
 class Oracle {
  public:
-  /// It finds at most so many pairs in a frame.
+  /// `max_pairs`: the limit of pairs per frame.
   explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30,
-                  std::size_t most_pairs = kAnyNumberOfPairs)
-      : budget_bytes_(budget_bytes), most_pairs_(most_pairs) {}
+                  std::size_t max_pairs = kAnyNumberOfPairs)
+      : budget_bytes_(budget_bytes), max_pairs_(max_pairs) {}
 
-  // Both throw InputError if there are more than it may find.
+  // Both throw InputError beyond the limit of pairs.
 
-  /// The overlapping pairs of these boxes that are wanted, ascending; valid until the next call.
+  /// The overlapping wanted pairs of these boxes, ascending; valid until the next call.
   std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
   PairDigest pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
 
@@ -37,26 +36,25 @@ class Oracle {
   struct Answer {
     CollisionFilter filter;
     PairDigest digest;
-    std::optional<std::vector<Pair>> pairs;  ///< nothing when they did not fit in the budget
+    std::optional<std::vector<Pair>> pairs;  ///< nothing if beyond the budget
   };
-  /// The pairs asked for are in the answer, or else in scratch_.
+  /// With `with_pairs`, they are in the answer, or else in scratch_.
   Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter, bool with_pairs);
 
   std::map<std::pair<HashValue, const void*>, Answer> answers_;
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
-  std::size_t most_pairs_;
+  std::size_t max_pairs_;
 };
 
-/// How an answer differs from the right one in one frame.
+/// The differences of an answer from the right one in one frame.
 ///
-/// An extra pair was reported though the two boxes do not overlap, or are not wanted: it is
-/// *allowed* when they are wanted and overlap once enlarged by the algorithm's margin, else it is
-/// *false*. An invalid pair is a duplicate, has
-/// a >= b, or names a body that does not exist; of events also one that cannot be, as
-/// EventAccumulator says.
+/// An extra pair was reported though its boxes do not overlap, or though it is unwanted: it is
+/// *allowed* if wanted and overlapping once enlarged by the algorithm's margin, else *false*. An
+/// invalid pair is a duplicate, has a >= b, or names a body that does not exist; for events also
+/// one that is impossible according to EventAccumulator.
 struct FrameDifference {
-  /// At most this many pairs of each kind are listed; the counts are always complete.
+  /// The maximum number of pairs listed of each kind; the counts are always complete.
   static constexpr std::size_t kListed = 1000;
 
   int repetition = 0;

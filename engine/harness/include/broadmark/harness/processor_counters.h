@@ -1,4 +1,4 @@
-// What the processor itself counts while a case runs, as far as the system lets us see it.
+// Hardware performance counters, where the system permits them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace broadmark {
 
-/// Of the program, without the system's part. Cache misses are those of the last level.
+/// User-space counts only. Cache misses are those of the last level.
 enum class ProcessorCounter { cycles, instructions, cache_misses, branches, branch_misses };
 inline constexpr NameTable kProcessorCounters{{NamedValue{ProcessorCounter::cycles, "cycles"},
                                                {ProcessorCounter::instructions, "instructions"},
@@ -18,27 +18,27 @@ inline constexpr NameTable kProcessorCounters{{NamedValue{ProcessorCounter::cycl
                                                {ProcessorCounter::branches, "branches"},
                                                {ProcessorCounter::branch_misses, "branch_misses"}}};
 
-/// One count of each; nothing where it is not known.
+/// One count per counter; nothing where unavailable.
 using ProcessorCounts =
     ValueOfEach<ProcessorCounter, std::optional<std::uint64_t>, kProcessorCounters.entries.size()>;
 
-/// Counts what the thread that made it does, and the threads that this one starts afterwards.
-/// Most virtual machines and containers do not allow it: then nothing is known, which is no error.
+/// Counts for the thread that made it, and the threads which that thread starts afterwards. Most
+/// virtual machines and containers forbid it: then all counts are nothing, without an error.
 class ProcessorCounters {
  public:
-  /// What to count, in the kernel's numbers (perf_event_open).
+  /// A counter in the kernel's terms (perf_event_open).
   struct Event {
     std::uint32_t type = 0;
     std::uint64_t config = 0;
   };
   using Events = std::array<Event, kProcessorCounters.entries.size()>;
 
-  /// Those of the processor.
+  /// The processor's counters.
   ProcessorCounters();
-  /// Other ones in their places, for tests on machines whose processor's are not to be had.
+  /// Substitutes, for tests on machines without access to the processor's counters.
   explicit ProcessorCounters(const Events& events);
 
-  /// Counts as long as it lives.
+  /// Counts during its lifetime.
   class Counting {
    public:
     explicit Counting(const ProcessorCounters& counters);
@@ -50,14 +50,14 @@ class ProcessorCounters {
     const ProcessorCounters& counters_;
   };
 
-  /// Begins anew from zero.
+  /// Resets to zero.
   void restart();
-  /// What was counted since. With more counters than the processor has at a time, they take turns,
-  /// and these are estimates.
+  /// The counts since. With more counters than hardware slots the kernel multiplexes them, and
+  /// these are estimates.
   [[nodiscard]] ProcessorCounts counts() const;
 
  private:
-  /// The count, and for how long it was wanted and done.
+  /// A raw count, with the time enabled and the time running.
   struct Reading {
     std::uint64_t count = 0;
     std::uint64_t wanted_ns = 0;

@@ -1,4 +1,4 @@
-// Running a case over a whole recording, and keeping what came of it.
+// Running a case over a whole recording, and collecting its results.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,30 @@ namespace broadmark {
 std::string recordingId(const RecordingReference&);
 /// recordingId() + '/' + caseName().
 std::string caseId(const RecordingReference&, const Case&);
-/// caseName() of the case that gave this result: its id without the recording's.
+/// caseName() of the result's case: its id without the recording's.
 std::string caseNameOf(const CaseResult&);
 /// caseNameOf() without instruction set and threads: "kd-mt/avx2/t4/margin=0.1" is
 /// "kd-mt/margin=0.1".
 std::string variantOf(const CaseResult&);
 
-/// A result with everything but measurements.
+/// A result without measurements.
 CaseResult beginCase(const Case&, const RecordingReference&);
 
-/// Who looks on while a repetition runs.
+/// Callbacks for a running repetition.
 struct RunHooks {
-  /// Asked between frames; true ends the repetition without a result.
+  /// Polled between frames; true ends the repetition without a result.
   std::function<bool()> cancelled;
-  /// Told after each frame.
+  /// Called after each frame.
   std::function<void(std::uint32_t frame)> progress;
 };
 
 /// One pass over `source`, added to `result`: times, pairs, differences, status. Throws InputError
 /// (bad recording, no such device). Returns false when cancelled: the repetition is then dropped.
 /// `measured` = false: a warm-up, checked but with its times dropped.
-bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle&,
+bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, Oracle&,
                    const RunHooks& hooks = {}, bool measured = true);
 
-/// Runs a few repetitions of one case: the short way for programs of your own.
+/// Runs a few repetitions of one case: a shortcut for your own programs.
 CaseResult runCase(const Case&, FrameSource&, const RunPolicy& = {}, int repetitions = 1);
 
 }  // namespace broadmark

@@ -1,10 +1,10 @@
-// A case in a process of its own: whatever its algorithm does, everything else goes on, and the
-// memory it takes is its own.
+// A case in its own process, which isolates other cases from crashes and measures its memory
+// separately.
 //
-// The worker process is a program with a command that calls serveCase(): this one, or another
-// build of it. Both sides talk by messages, one JSON object each; frames and answers lie in memory
-// that both share. From there the worker copies a frame into memory of its own before the clock
-// starts. What is said is told in worker/protocol.h; it has a version.
+// The worker process is a program with a command that calls serveCase(): this program, or another
+// build of it. The processes exchange messages, one JSON object each; frames and answers are in
+// shared memory. The worker copies a frame from there to private memory before the clock starts.
+// worker/protocol.h defines the versioned protocol.
 #pragma once
 
 #include <chrono>
@@ -19,28 +19,28 @@
 namespace broadmark {
 
 struct WorkerOptions {
-  /// What to start: a program, and the arguments that make it call serveCase().
+  /// The command to start: a program, and the arguments with which it calls serveCase().
   std::vector<std::string> command;
-  /// On a single call into the algorithm; then the process is killed.
+  /// Limit on a single call into the algorithm; beyond it the process is killed.
   std::chrono::duration<double> hard_limit{60};
-  /// On the process's first answers: to its start, and to the case that it is to run.
+  /// Limit on the first answers of a process: to its start, and to its case.
   std::chrono::duration<double> begin_limit{60};
-  /// Data that the process may hold; beyond it, allocating fails. 0: whatever the system gives.
+  /// Limit on the process's data; beyond it, allocating fails. 0: no limit.
   std::uint64_t memory_limit_bytes = 0;
   bool pin = false;  ///< as InProcessExecutor does
   CancelQuery cancelled = {};
 };
 
-/// The host of a case in a worker process, which lasts from the first start() until it fails or the
-/// host goes. The next start() after a failure has a new process; it throws InputError when the
-/// process cannot be started or speaks another version.
-std::unique_ptr<CaseExecutor> makeWorkerProcess(Case run, WorkerOptions options);
+/// Hosts a case in a worker process, from the first start() until a failure or the host's
+/// destruction. The next start() after a failure has a new process; it throws InputError if the
+/// process cannot be started or has another protocol version.
+std::unique_ptr<CaseExecutor> makeWorkerProcess(Case test_case, WorkerOptions options);
 
-/// Finds an algorithm by its id and the file of its plug-in ("": built in). Throws InputError.
+/// Finds an algorithm by its id and its plug-in file ("": built in). Throws InputError.
 using AlgorithmFinder = std::function<Algorithm(const std::string& id, const std::string& plugin)>;
 
-/// The worker's side: serves the process that started this one until that hangs up. Throws
-/// InputError when nobody did.
+/// The worker's side: serves the parent process until that hangs up. Throws InputError if this
+/// process was not started as a worker.
 void serveCase(const AlgorithmFinder& find);
 
 }  // namespace broadmark

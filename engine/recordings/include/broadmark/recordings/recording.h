@@ -1,10 +1,10 @@
 // Recordings: reading and writing.
 //
-// Those of the original Broadmark, byte for byte. Little-endian: name char[128], object type
-// char[128] (NUL-padded printable ASCII), int32 objects, int32 frames, int32 0, int32 0, the world
-// box, then 1 + frames sets of 32 bytes per body. In an .aabbs recording all sets are boxes;
-// .posrot recordings are in posrot.h. What these cannot hold, absent bodies and a collision filter,
-// a .broadmark recording can: recording2.h.
+// Compatible with the original Broadmark's format, byte for byte. Little-endian: name char[128],
+// object type char[128] (NUL-padded printable ASCII), int32 objects, int32 frames, int32 0, int32
+// 0, the world box, then 1 + frames sets of 32 bytes per body. In an .aabbs recording all sets are
+// boxes; for .posrot recordings see posrot.h. Absent bodies and collision filters require a
+// .broadmark recording: recording2.h.
 #pragma once
 
 #include <cstddef>
@@ -29,18 +29,17 @@ inline constexpr std::string_view kAabbsExtension = ".aabbs";
 inline constexpr std::string_view kPosrotExtension = ".posrot";
 inline constexpr std::string_view kBroadmarkExtension = ".broadmark";
 
-/// Of all kinds of recordings, for help and messages.
+/// Of all formats, for help and messages.
 std::vector<std::string> recordingExtensions();
-/// Of those that hold boxes: what a RecordingWriter writes.
+/// Of the formats with boxes, which RecordingWriter supports.
 std::vector<std::string> boxRecordingExtensions();
 
-/// Whether an .aabbs recording can hold the scene: nobody is ever absent, and all pairs are wanted.
+/// Whether an .aabbs recording can hold the scene: without absent bodies or unwanted pairs.
 bool fitsAabbs(const SceneInfo&);
-/// Of the recording that a scene gets where nobody asks for another: .aabbs if that can hold it,
-/// else .broadmark.
+/// The default format's extension for the scene: .aabbs if that can hold it, else .broadmark.
 std::string_view recordingExtension(const SceneInfo&);
 
-/// Throws InputError unless a recording of this name can hold the scene.
+/// Throws InputError unless the format named by the path can hold the scene.
 void requireHolds(const std::filesystem::path& path, const SceneInfo&);
 
 /// Size of a whole .aabbs or .posrot recording: 304 + 32·objects·(1 + frames); the largest uint64
@@ -52,71 +51,71 @@ std::string recordingFileName(const SceneInfo&, std::string_view extension);
 /// The same with recordingExtension().
 std::string recordingFileName(const SceneInfo&);
 
-/// What a recording can say of where it comes from. Only .broadmark recordings can.
+/// Provenance of a recording. Stored only in .broadmark recordings.
 struct RecordingOrigin {
-  std::string source;            ///< what it was made from, if that was a file
-  std::string scene_parameters;  ///< a JSON object, as in the sidecar of a baked one; "": unknown
+  std::string source;            ///< the source file, if any
+  std::string scene_parameters;  ///< a JSON object, as in a baked recording's sidecar; "": unknown
 
   friend bool operator==(const RecordingOrigin&, const RecordingOrigin&) = default;
 };
 
-/// A recording of any kind and length, read with the memory of one frame. Every frame is checked as
-/// it is read. All errors are InputErrors that name the file and the byte offset, or frame and
+/// A recording of any format and length, read with the memory of one frame. Every frame is
+/// validated when read. All errors are InputErrors with the file and the byte offset, or frame and
 /// body.
 class Recording : public IndexedFrames {
  public:
   [[nodiscard]] const SceneInfo& scene() const final { return scene_; }
 
-  /// XXH3-128 of the whole file as 32 hex digits; reads it through on first use.
+  /// XXH3-128 of the whole file as 32 hex digits; computed on first use.
   const std::string& hash();
 
-  /// The path, or what stands for it in messages.
+  /// The path, or a substitute for messages.
   [[nodiscard]] const std::string& name() const final { return name_; }
 
   [[nodiscard]] virtual const RecordingOrigin& origin() const;
 
-  /// Of the whole file.
+  /// Size of the file.
   [[nodiscard]] std::uint64_t bytes() const { return size_; }
 
  protected:
   Recording(FileDescriptor file, std::string name);
 
-  /// To be called once: what the header says.
+  /// Must be called once, with the header's contents.
   void setScene(SceneInfo scene) { scene_ = std::move(scene); }
-  /// Reads exactly `bytes.size()` bytes, all of them from the file as it was opened.
+  /// Reads exactly `bytes.size()` bytes. Throws if the file was modified since it was opened.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:
-  /// Throws InputError when somebody has written into the open file: what was read before and after
-  /// would not go together. (A file that has taken its name is another one, and disturbs nobody.)
+  /// Throws InputError if the open file was modified: earlier and later reads would be
+  /// inconsistent. (A file renamed to the same path is another file, and harmless.)
   void requireUnchanged() const;
 
   std::string name_;
   FileDescriptor file_;
   std::uint64_t size_ = 0;
-  timespec written_{};  ///< when it was written to last
+  timespec written_{};  ///< last modification
   SceneInfo scene_;
   std::string hash_;
 };
 
-/// A recording laid out as the original's: .aabbs or .posrot.
+/// A recording in the original's format: .aabbs or .posrot.
 class OriginalRecording : public Recording {
  protected:
-  /// Checks the header and the length of an open file.
+  /// Validates the header and the length of an open file.
   OriginalRecording(FileDescriptor file, std::string name);
 
-  /// Reads set `index`, which holds `bytes.size()` bytes.
+  /// Reads set `index` of `bytes.size()` bytes.
   void readSet(std::uint32_t index, std::span<std::byte> bytes) const;
 };
 
-/// Opens a recording of the kind that the path's extension names; without one of ours, .aabbs.
+/// Opens a recording in the format of the path's extension; for unknown extensions, .aabbs.
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path);
 
 /// Reads an .aabbs recording.
 class RecordingReader final : public OriginalRecording {
  public:
   explicit RecordingReader(const std::filesystem::path& path);
-  /// The same from an open descriptor, which this takes over; `name` stands for it in messages.
+  /// Reads from an open descriptor, which this takes over; `name` is used in messages.
   RecordingReader(FileDescriptor file, std::string name);
 
  private:
@@ -125,48 +124,48 @@ class RecordingReader final : public OriginalRecording {
   LargeVector<Aabb> boxes_;
 };
 
-class RecordingFile;  // a recording of some kind while it is written
+class RecordingFile;  // a recording of some format being written
 
-/// Writes a recording of boxes, frame by frame, to a temporary neighbour of `path` that takes its
-/// name only in finish(): a writer that is destroyed or killed before leaves nothing that looks
-/// whole. The path's extension names the kind; without one of ours it is .aabbs.
+/// Writes a recording of boxes, frame by frame, to a temporary file beside `path` that finish()
+/// renames: a writer that is destroyed or killed before leaves no file that appears complete. The
+/// format is that of the path's extension; for unknown extensions it is .aabbs.
 class RecordingWriter {
  public:
-  /// Throws InputError if the scene cannot be recorded (names, counts, or .aabbs cannot hold it) or
-  /// the path not be written.
+  /// Throws InputError for an invalid scene (names, counts, or unsupported by .aabbs) or if the
+  /// path cannot be written.
   RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
                   const RecordingOrigin& origin = {});
-  /// Writes to an unnamed file in the temporary directory instead, of the kind that
-  /// recordingExtension() names; see finishTemporary().
+  /// Writes to an unnamed file in the temporary directory instead, in the format of
+  /// recordingExtension(); see finishTemporary().
   explicit RecordingWriter(const SceneInfo& scene);
   ~RecordingWriter();
 
-  /// Appends one set of boxes; the first is the initial pose. Throws InputError when a box is not
-  /// finite or inverted (a simulation that blew up) and not that of a body that may be absent, or
-  /// the disc is full.
+  /// Appends one set of boxes; the first is the initial pose. Throws InputError if a box is not
+  /// finite or inverted (a simulation that blew up), except for absent bodies, or if the disc is
+  /// full.
   void write(std::span<const Aabb> boxes);
-  /// The same for the next frame of a source, all of whose frames are written. If it says what
-  /// changed, a .broadmark recording looks at nothing else.
+  /// Appends the next frame of a source; all of its frames must be written. With Frame::changed, a
+  /// .broadmark recording only reads the changed boxes.
   void write(const Frame& frame);
-  /// Completes the recording and gives it its name. Exactly 1 + frames sets must be written.
+  /// Completes the recording and renames it to its path. Exactly 1 + frames sets must be written.
   /// Returns the recording's hash, as Recording::hash().
   std::string finish();
-  /// The same for an unnamed recording: a reader of it. It vanishes with the reader.
+  /// Completes an unnamed recording and returns a reader. The file is deleted with the reader.
   std::unique_ptr<Recording> finishTemporary();
 
  private:
   std::unique_ptr<RecordingFile> file_;
 };
 
-/// Told after each frame; returning false stops.
+/// Called after each frame; returning false stops.
 using FrameProgress = std::function<bool(std::uint32_t frame)>;
-/// Takes down one frame.
+/// Receives one frame.
 using FrameSink = std::function<void(const Frame&)>;
 
-/// Hands all frames of `source`, from its initial pose on, to `sink`. Returns false when `progress`
-/// stopped it.
+/// Passes all frames of `source`, from its initial pose on, to `sink`. Returns false when
+/// `progress` stopped it.
 bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& progress = {});
-/// The same into a recording, which is not whole when stopped.
+/// Writes all frames to a recording, which is incomplete when stopped.
 bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress = {});
 
 }  // namespace broadmark

@@ -1,6 +1,6 @@
-// Recording 2, .broadmark: for worlds that change, and for large, mostly still ones. A frame holds
-// only what changed, and every so often all boxes: a key frame, from which seeking begins.
-// docs/recordings.md describes the bytes; recording.h has the writer.
+// Recording 2, .broadmark: for changing worlds, and for large, mostly still ones. A frame holds
+// only changes; periodic key frames hold all boxes, and serve for seeking. docs/recordings.md
+// describes the bytes; recording.h has the writer.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@
 
 namespace broadmark {
 
-/// What the index of a recording 2 says of a frame, as it lies in the file.
+/// A frame's index entry, in file layout.
 struct RecordedFrame {
-  std::uint64_t offset;   ///< where it begins
-  std::uint32_t changed;  ///< how many bodies changed
-  std::uint32_t key;      ///< the last key frame up to this one, perhaps itself
+  std::uint64_t offset;   ///< of its first byte
+  std::uint32_t changed;  ///< number of changed bodies
+  std::uint32_t key;      ///< index of the last key frame up to this one, inclusive
   HashValue hash;         ///< of its bytes
 };
 
 /// Reads a .broadmark recording. Absent bodies have kEmptyBox; Frame::changed is always known. The
-/// next frame costs what changed; any other one at most two whole frames and what changed in it.
+/// next frame costs its changes; any other one at most two whole frames and its changes.
 class Recording2Reader final : public Recording {
  public:
   explicit Recording2Reader(const std::filesystem::path& path);
-  /// The same from an open descriptor, which this takes over; `name` stands for it in messages.
+  /// Reads from an open descriptor, which this takes over; `name` is used in messages.
   Recording2Reader(FileDescriptor file, std::string name);
 
   [[nodiscard]] const RecordingOrigin& origin() const override { return origin_; }
@@ -41,21 +41,21 @@ class Recording2Reader final : public Recording {
     return std::span(ids_).first(changed_);
   }
 
-  /// Reads header and index, and checks that they are whole.
+  /// Reads and validates header and index.
   void open();
-  /// Of this size; returns where the frames begin.
+  /// `size`: of the header. Returns the offset of the frames.
   std::uint64_t readHeader(std::uint64_t size, std::uint64_t index_offset);
   void readIndex(std::uint64_t offset);
   void checkIndex(std::uint64_t begin, std::uint64_t end) const;
-  /// Makes `boxes_` those of a frame: a key frame, or the one after `current_`.
+  /// Advances `boxes_` to a frame: a key frame, or the one after `current_`.
   void readFrame(std::uint32_t index);
   void readIds(std::uint32_t index);
   void readAllBoxes(std::uint32_t index, bool follows);
   void readChangedBoxes(std::uint32_t index);
-  /// Hands the boxes of a frame to take(row, box).
+  /// Passes the boxes of a frame to take(row, box).
   template <class Take>
   void readRows(std::uint32_t index, Take&& take);
-  /// Throws InputError: a wrong checksum if that is so, else what is said.
+  /// Throws InputError: with a wrong checksum, if that is the cause, else with `what`.
   [[noreturn]] void fail(std::uint32_t index, const std::string& what);
   [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const std::string& what);
   [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const Aabb& box);
@@ -64,7 +64,7 @@ class Recording2Reader final : public Recording {
   std::vector<RecordedFrame> index_;
   LargeVector<Aabb> boxes_;
   std::vector<std::uint32_t> ids_;
-  std::uint32_t changed_ = 0;             ///< so many of them count
+  std::uint32_t changed_ = 0;             ///< number of valid entries
   std::optional<std::uint32_t> current_;  ///< the frame that boxes_ and ids_ hold
   std::vector<std::byte> piece_;          ///< of a frame, while it is read
   Hasher hasher_;

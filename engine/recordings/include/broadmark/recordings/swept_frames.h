@@ -1,4 +1,4 @@
-// Swept boxes: what continuous collision detection feeds a broad phase.
+// Swept boxes, as used in continuous collision detection.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,20 @@
 
 namespace broadmark {
 
-/// The smallest box around `now` and `before`, each bound then moved outward by one unit in the
-/// last place. Of an absent body: kEmptyBox if it is absent now; without `before` if it was absent
-/// then.
+/// The smallest box around `now` and `before`, with each bound moved outward by one unit in the
+/// last place. kEmptyBox if `now` is absent; `before` is ignored if absent.
 Aabb sweptBox(const Aabb& before, const Aabb& now);
 
-/// At the end of a scene's name: its boxes are swept.
+/// Suffix of a scene's name: its boxes are swept.
 inline constexpr std::string_view kSweptSuffix = " swept";
-/// What a scene is called with swept boxes: "FreeFall swept".
+/// The name of a scene with swept boxes: "FreeFall swept".
 std::string sweptName(const SceneInfo&);
 
-/// The hash of a recording's swept boxes, of which the recording's own is `hash`.
+/// The hash of a recording's swept boxes; `hash` is the recording's own.
 std::string sweptHash(const std::string& hash);
 
-/// The same bodies and frames with swept boxes: each body's box holds the one that it had in the
-/// frame before, too. In the initial pose it is only rounded outward.
+/// The same bodies and frames with swept boxes: each box also contains the body's box in the frame
+/// before. In the initial pose it is only rounded outward.
 class SweptFrames final : public IndexedFrames {
  public:
   explicit SweptFrames(std::unique_ptr<IndexedFrames> frames);
@@ -39,22 +38,22 @@ class SweptFrames final : public IndexedFrames {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override;
-  /// Starts with frame `index`, whose boxes are not swept yet.
+  /// Starts with frame `index`; its boxes are not swept yet.
   void begin(std::uint32_t index);
-  /// Goes on to frame `index`, the one after the last.
+  /// Advances to frame `index`, the successor of `last_`.
   void advance(std::uint32_t index);
-  /// Which bodies' swept boxes may be others than in the last frame.
+  /// The bodies with swept boxes that may differ from the last frame's.
   std::span<const std::uint32_t> candidates(std::span<const std::uint32_t> changed);
 
   std::unique_ptr<IndexedFrames> frames_;
   SceneInfo scene_;
-  std::optional<std::uint32_t> last_;  ///< the frame that the following are of; nothing: none
-  std::vector<Aabb> before_;           ///< as `frames_` has them
+  std::optional<std::uint32_t> last_;  ///< the frame of the following members; nothing: none
+  std::vector<Aabb> before_;           ///< boxes of `frames_`
   LargeVector<Aabb> boxes_;            ///< swept
   bool knows_changed_ = false;
-  std::vector<std::uint32_t> moved_;       ///< that changed in `frames_`
-  std::vector<std::uint32_t> candidates_;  ///< that changed in it in this frame or the one before
-  std::vector<std::uint32_t> changed_;     ///< whose swept boxes changed
+  std::vector<std::uint32_t> moved_;       ///< bodies that changed in `frames_`
+  std::vector<std::uint32_t> candidates_;  ///< the same, in this frame or the one before
+  std::vector<std::uint32_t> changed_;     ///< bodies with changed swept boxes
 };
 
 }  // namespace broadmark

@@ -6,7 +6,7 @@
 
 namespace broadmark {
 
-/// A field, quoted where it must be.
+/// A field, quoted if necessary.
 std::string csvField(std::string_view text);
 
 }  // namespace broadmark

@@ -15,20 +15,20 @@ struct FrameRow {
   FrameCounts counts;
   bool changes_known = false;  ///< FrameCount::changed_bodies was counted
   bool checked = false;        ///< the counts of wrong pairs mean something
-  bool disturbed = false;      ///< something was drawn while the frame was timed
+  bool disturbed = false;      ///< the frame was drawn while it was timed
 };
 
 class FrameTable {
  public:
   FrameTable();
 
-  /// The rows added from now on are of this case.
+  /// Sets the case of the rows added from now on.
   void begin(const CaseResult& result);
   void add(const FrameRow& row);
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  std::string case_;  ///< what the rows begin with
+  std::string case_;  ///< prefix of each row
   std::string text_;
 };
 

@@ -1,4 +1,4 @@
-// Results of several runs as one: shards of a plan, or the same on several machines.
+// Merges results of several runs: shards of a plan, or the same plan on several machines.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,12 @@
 namespace broadmark {
 
 struct MergedResults {
-  Results results;           ///< complete if all of them are
-  std::size_t repeated = 0;  ///< cases that were in several of them
+  Results results;           ///< complete if all runs are
+  std::size_t repeated = 0;  ///< cases present in several runs
 };
 
-/// All cases, in their order. A case that was run several times, by the same build on the same
-/// machine, is there once: as it was run last, but rather whole than in part. `options` are left to
-/// the caller.
+/// All cases, in order. Of a case run several times by the same build on the same machine only the
+/// latest result is kept, with complete results preferred. `options` are left to the caller.
 MergedResults mergeResults(const std::vector<Results>& runs);
 
 }  // namespace broadmark

@@ -31,41 +31,39 @@ struct Estimate {
   Interval ci95;
 };
 
-/// The median of a series in the order of time, whose neighbours may resemble each other, as the
-/// frames of a run do. The interval is a percentile bootstrap of circular blocks (Politis and
-/// Romano, 1992), as long as blockLength() says of the values' sides of the median, but not shorter
-/// than 2 n^(1/3); it is widened as Student's t is when there are few blocks. The same values give
-/// the same interval. Not empty.
+/// The median of a time series with correlated neighbours, such as the frames of a run. The
+/// interval is a percentile bootstrap of circular blocks (Politis and Romano, 1992), with the
+/// blockLength() of the signs around the median, but at least 2 n^(1/3); with few blocks it is
+/// widened by Student's t. Deterministic. Not empty.
 Estimate medianOfSeries(std::span<const double> values);
-/// How many neighbours are to stay together when a series is resampled for its mean: the rule of
-/// Politis and White (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of
-/// the series.
+/// The block length for resampling a series to estimate its mean: the rule of Politis and White
+/// (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of the series.
 std::size_t blockLength(std::span<const double> values);
 
-/// The length of blocks for a series that is judged by these values' mean: as blockLength() says,
-/// but never short, since in short series likeness hides in the noise.
+/// The length of blocks for a series that is judged by these values' mean: like blockLength(),
+/// but never short, since in short series noise hides the correlation.
 std::size_t safeBlockLength(std::span<const double> values);
 /// 95 % interval around `estimate`, which is `statistic` of all `count` values, by a percentile
-/// bootstrap of circular blocks (Politis and Romano, 1992). `block` values stay together.
-/// `statistic` is called with the places of the values drawn. The interval is widened as Student's
-/// t is when there are few blocks. The same values give the same interval.
+/// bootstrap of circular blocks of `block` values (Politis and Romano, 1992). `statistic` is called
+/// with the indices of the values drawn. With few blocks the interval is widened by Student's t.
+/// Deterministic.
 Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
                           const std::function<double(std::span<const std::size_t>)>& statistic);
 
 /// 95 % confidence interval of the mean of independent values; nothing for fewer than two.
 std::optional<Interval> confidence95(std::span<const double> values);
 
-/// How many values lie where.
+/// The distribution of values in bins.
 struct Histogram {
-  double low = 0;   ///< where the first bin begins
-  double high = 0;  ///< where the last one ends
+  double low = 0;   ///< lower end of the first bin
+  double high = 0;  ///< upper end of the last bin
   std::vector<std::size_t> counts;
 
   [[nodiscard]] double begin(std::size_t bin) const;
 };
 
-/// From the second to the 98th percentile: the tails would squeeze all else into one bin, and count
-/// to the first and the last. No bins if all of these are the same. Not empty.
+/// Bins from the second to the 98th percentile: the tails would compress the rest into one bin, and
+/// count to the first and the last bin. No bins if these percentiles are equal. Not empty.
 Histogram histogramOf(std::span<const double> values, std::size_t bins);
 
 /// Times of one case, in seconds. Outliers are counted, never dropped.
@@ -77,7 +75,7 @@ struct Summary {
   double min = 0;
   double stddev = 0;
   std::size_t outliers = 0;  ///< frames above the third quartile + 3 interquartile ranges
-  /// Of the mean, over repetitions; nothing for a single one.
+  /// of the mean, over repetitions; nothing for a single one
   std::optional<Interval> ci95;
 };
 

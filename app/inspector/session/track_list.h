@@ -1,4 +1,4 @@
-// The algorithms in the list: how each is run, and whose answer is shown.
+// The inspected algorithms: their cases, and the track of the shown answer.
 #pragma once
 
 #include <algorithm>
@@ -16,26 +16,26 @@
 namespace broadmark {
 
 /// An algorithm in the list, as it is edited. What runs is its case.
-struct LaneEdit : LaneSpec {
+struct TrackEdit : TrackSpec {
   std::unique_ptr<BroadPhase> parameters;  ///< holds their values; never run
 };
 
-class Lanes {
+class TrackList {
  public:
   /// `algorithms`: those that can be chosen.
-  explicit Lanes(std::vector<Algorithm> algorithms) : algorithms_(std::move(algorithms)) {}
+  explicit TrackList(std::vector<Algorithm> algorithms) : algorithms_(std::move(algorithms)) {}
 
   [[nodiscard]] const std::vector<Algorithm>& algorithms() const { return algorithms_; }
 
   /// Adds an algorithm with its default parameters. Throws InputError for an unknown id.
-  LaneEdit& add(const std::string& algorithm_id) {
+  TrackEdit& add(const std::string& algorithm_id) {
     return add(
         makeCase(requireAlgorithm(algorithm_id, algorithms_), bestIsa(), allCores(), {}, {}));
   }
 
   /// Throws InputError for bad parameters.
-  LaneEdit& add(const Case& run) {
-    list.push_back({{.number = last_number_ + 1, .run = run}, makeInstance(run)});
+  TrackEdit& add(const Case& test_case) {
+    list.push_back({{.number = last_number_ + 1, .test_case = test_case}, makeInstance(test_case)});
     ++last_number_;
     if (list.size() == 1) shown_ = last_number_;
     changed();
@@ -43,7 +43,7 @@ class Lanes {
   }
 
   void remove(int number) {
-    std::erase_if(list, [&](const LaneEdit& edit) { return edit.number == number; });
+    std::erase_if(list, [&](const TrackEdit& edit) { return edit.number == number; });
     if (shown_ == number) shown_ = list.empty() ? 0 : list.front().number;
     changed();
   }
@@ -54,32 +54,32 @@ class Lanes {
     changed();
   }
 
-  /// To be called after lanes were edited: takes over their parameters.
+  /// To be called after tracks were edited: takes over their parameters.
   void changed() {
-    for (LaneEdit& lane : list) {
-      Case& run = lane.run;
+    for (TrackEdit& track : list) {
+      Case& test_case = track.test_case;
       ParameterValues values =
-          changedValues(parameterValues(*lane.parameters), *run.algorithm.create());
-      run =
-          makeCase(run.algorithm, run.isa, run.threads, run.device, std::move(values), run.answer);
+          changedValues(parameterValues(*track.parameters), *test_case.algorithm.create());
+      test_case = makeCase(test_case.algorithm, test_case.isa, test_case.threads, test_case.device,
+                           std::move(values), test_case.answer);
     }
     on_change();
   }
 
   /// Null if there is none of this number.
-  [[nodiscard]] LaneEdit* find(int number) {
-    const auto found = std::ranges::find(list, number, &LaneEdit::number);
+  [[nodiscard]] TrackEdit* find(int number) {
+    const auto found = std::ranges::find(list, number, &TrackEdit::number);
     return found == list.end() ? nullptr : &*found;
   }
 
-  /// The lane whose answer is shown, by number; 0: the oracle's.
+  /// Number of the track of the shown answer; 0: the oracle's.
   [[nodiscard]] int shown() const { return shown_; }
   void show(int number) { shown_ = number; }
 
   /// What is to run.
-  [[nodiscard]] std::vector<LaneSpec> specs() const { return {list.begin(), list.end()}; }
+  [[nodiscard]] std::vector<TrackSpec> specs() const { return {list.begin(), list.end()}; }
 
-  std::vector<LaneEdit> list;
+  std::vector<TrackEdit> list;
   std::function<void()> on_change;  ///< set by the owner
 
  private:

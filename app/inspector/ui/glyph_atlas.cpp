@@ -1,4 +1,4 @@
-#include "inspector/ui/letters.h"
+#include "inspector/ui/glyph_atlas.h"
 
 #include <imgui_internal.h>
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 // Latin, and the dashes, arrows, dots and signs that our texts use.
 constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x2010, 0x2026, 0x2190, 0x2193, 0x2212,
                                0x2212, 0x2248, 0x2248, 0x2264, 0x2265, 0};
-/// So many fonts are looked through for a letter.
+/// Maximum fonts searched for a glyph.
 constexpr std::size_t kMaxTried = 40;
 constexpr std::uintmax_t kLargestFont = 64 << 20;  // bytes
 
@@ -47,7 +47,7 @@ int rankOf(const fs::path& font) {
   return static_cast<int>(kFirst.size());
 }
 
-/// Those of the system that may have letters which the own font lacks.
+/// The system's fonts, as a fallback.
 std::vector<fs::path> systemFonts() {
   std::vector<fs::path> directories = {"/usr/share/fonts", "/usr/local/share/fonts"};
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
@@ -74,7 +74,7 @@ std::vector<fs::path> systemFonts() {
 
 }  // namespace
 
-void Letters::need(std::string_view text) {
+void GlyphAtlas::request(std::string_view text) {
   const char* at = text.data();
   const char* const end = at + text.size();
   while (at < end) {
@@ -88,11 +88,11 @@ void Letters::need(std::string_view text) {
     at += length;
     const auto known = static_cast<ImWchar>(letter);
     if (letter > IM_UNICODE_CODEPOINT_MAX || isInRanges(known)) continue;
-    stale_ |= needed_.insert(known).second;
+    dirty_ |= needed_.insert(known).second;
   }
 }
 
-ImFont* Letters::build(ImFontAtlas& atlas, float size, float large_size) const {
+ImFont* GlyphAtlas::build(ImFontAtlas& atlas, float size, float large_size) const {
   atlas.Clear();
   ImFontGlyphRangesBuilder builder;
   for (const ImWchar letter : needed_) builder.AddChar(letter);
@@ -125,15 +125,15 @@ ImFont* Letters::build(ImFontAtlas& atlas, float size, float large_size) const {
   return large;
 }
 
-std::size_t Letters::missingFrom(const ImFont& font) const {
+std::size_t GlyphAtlas::missingFrom(const ImFont& font) const {
   return static_cast<std::size_t>(std::ranges::count_if(
       needed_, [&](ImWchar letter) { return font.FindGlyphNoFallback(letter) == nullptr; }));
 }
 
-ImFont* Letters::load(ImFontAtlas& atlas, float size, float large_size) {
-  const bool anew = std::exchange(stale_, false);
+ImFont* GlyphAtlas::load(ImFontAtlas& atlas, float size, float large_size) {
+  const bool was_stale = std::exchange(dirty_, false);
   ImFont* large = build(atlas, size, large_size);
-  if (missingFrom(*atlas.Fonts[0]) == missing_ || !anew) return large;
+  if (missingFrom(*atlas.Fonts[0]) == missing_ || !was_stale) return large;
   missing_ = missingFrom(*atlas.Fonts[0]);
   for (const fs::path& font : systemFonts()) {
     if (missing_ == 0) break;

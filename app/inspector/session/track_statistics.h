@@ -31,14 +31,14 @@ struct TimeRatios {
 
   FrameValues ratios;  ///< of the frames that both have run, and in which neither was disturbed
   std::uint64_t first_slower = 0;   ///< frames
-  std::uint64_t second_slower = 0;  ///< likewise
+  std::uint64_t second_slower = 0;  ///< frames in which the second track is slower
   double median = 1;
   std::optional<Extreme> highest;  ///< where the first one is slowest beside the second; nothing
                                    ///< without any frame
-  std::optional<Extreme> lowest;   ///< likewise, where it is quickest
+  std::optional<Extreme> lowest;   ///< of the fastest frame
 };
 
 /// Of the total times. O(n log n) for n frames.
-TimeRatios ratiosOf(const LaneReport& first, const LaneReport& second);
+TimeRatios ratiosOf(const TrackReport& first, const TrackReport& second);
 
 }  // namespace broadmark

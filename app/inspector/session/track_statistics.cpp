@@ -1,4 +1,4 @@
-#include "inspector/session/lane_statistics.h"
+#include "inspector/session/track_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& distur
   return statistics;
 }
 
-TimeRatios ratiosOf(const LaneReport& first, const LaneReport& second) {
+TimeRatios ratiosOf(const TrackReport& first, const TrackReport& second) {
   TimeRatios of;
   std::vector<double> all;
   const std::size_t frames = std::min(first.frames.size(), second.frames.size());

@@ -82,12 +82,12 @@ inline std::optional<Aabb> clipPlane(const BodyFilter& filter, const Aabb& world
   return plane;
 }
 
-struct ViewOptions {
+struct DisplayOptions {
   std::size_t colouring = 0;  ///< which of the colour modes
   bool hide_free = false;     ///< show only what overlaps
   bool pair_lines = false;    ///< a line between the centres of overlapping bodies…
   bool lines_of_all = false;  ///< …of all pairs, not only those of the selection
-  BodyFilter filter;          ///< who else is not shown
+  BodyFilter filter;          ///< hides further bodies
   bool xray = false;          ///< the selection is seen through what stands before it
   bool world_box = true;
   bool ground = true;
@@ -101,7 +101,7 @@ struct ViewOptions {
   [[nodiscard]] const ColourMode& colourMode() const {
     return colourModes()[colouring % colourModes().size()];
   }
-  friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
+  friend bool operator==(const DisplayOptions&, const DisplayOptions&) = default;
 };
 
 }  // namespace broadmark
