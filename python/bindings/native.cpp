@@ -101,14 +101,29 @@ Pairs asArray(std::vector<Pair> pairs) {
   return Pairs(shape, first, owner);
 }
 
+/// Replaces former names of parameters, with a FutureWarning.
+ParameterValues withCurrentNames(const ParameterValues& parameters) {
+  ParameterValues renamed;
+  for (const auto& [name, value] : parameters) {
+    const std::string current(currentParameterName(name));
+    renamed.emplace(current, value);
+    const std::string warning = "'" + name + "' is now called '" + current + "'";
+    if (current != name && PyErr_WarnEx(PyExc_FutureWarning, warning.c_str(), 2) != 0) {
+      throw py::error_already_set();
+    }
+  }
+  return renamed;
+}
+
 Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
                  const std::string& isa, const ParameterValues& parameters) {
+  const Case test_case =
+      makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", withCurrentNames(parameters));
   const std::span<const float> numbers(boxes.data(), static_cast<std::size_t>(boxes.size()));
   std::vector<Pair> pairs;
   {
     const py::gil_scoped_release release;
-    pairs =
-        findPairs(numbers, makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", parameters));
+    pairs = findPairs(numbers, test_case);
   }
   return asArray(std::move(pairs));
 }

@@ -78,6 +78,13 @@ os._exit(0)
 """
 
 
+def test_former_parameter_names_are_accepted_with_a_warning() -> None:
+    boxes = np.zeros((2, 6), dtype=np.float32)
+    with pytest.warns(FutureWarning, match="'crowded' is now called 'split_threshold'"):
+        pairs = broadmark.overlaps(boxes, "columns", parameters={"crowded": 7})
+    assert pairs.tolist() == [[0, 1]]
+
+
 def test_the_gil_is_released() -> None:
     code = OTHER_THREADS.format(package=str(SOURCE_FOLDER / "python"))
     subprocess.run([sys.executable, "-c", code], check=True)
