@@ -19,9 +19,13 @@
 //
 // Papers: I. Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014;
 // C. Lauterbach et al., "Fast BVH Construction on GPUs", 2009 (the Morton build). Library: Embree
-// 3, manual, "rtcCollide".
+// 3 or 4, manual, "rtcCollide".
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <fmt/format.h>
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
@@ -32,16 +36,16 @@
 #include <stdexcept>
 
 #include "broadmark/algorithm.h"
-#include "broadmark/destroy.h"
+#include "broadmark/c_deleter.h"
 #include "broadmark/reference_pairs.h"
 #include "variants.h"
 
 namespace broadmark::embree {
 namespace {
 
-using Device = std::unique_ptr<RTCDeviceTy, Destroy<rtcReleaseDevice>>;
-using Scene = std::unique_ptr<RTCSceneTy, Destroy<rtcReleaseScene>>;
-using Geometry = std::unique_ptr<RTCGeometryTy, Destroy<rtcReleaseGeometry>>;
+using Device = std::unique_ptr<RTCDeviceTy, CDeleter<rtcReleaseDevice>>;
+using Scene = std::unique_ptr<RTCSceneTy, CDeleter<rtcReleaseScene>>;
+using Geometry = std::unique_ptr<RTCGeometryTy, CDeleter<rtcReleaseGeometry>>;
 
 /// Boxes are clamped to this distance: surface areas must not overflow, and Embree drops boxes
 /// beyond its FLT_LARGE, 1.844e18.

@@ -1,11 +1,11 @@
-// Ownership of objects made by a C library.
+// Ownership of a C library's objects.
 #pragma once
 
 namespace broadmark {
 
-/// A deleter for std::unique_ptr: calls the library's function that destroys or releases an object.
+/// A deleter for std::unique_ptr that calls a C library's function to destroy or release an object.
 template <auto destroy>
-struct Destroy {
+struct CDeleter {
   template <class Object>
   void operator()(Object* object) const {
     destroy(object);
