@@ -11,7 +11,11 @@
 namespace broadmark {
 namespace {
 
-constexpr std::size_t kKeys = IM_ARRAYSIZE(ImGuiIO::KeysDown);
+#if IMGUI_VERSION_NUM < 18700
+constexpr ImGuiKey_ ImGuiKey_KeypadEnter = ImGuiKey_KeyPadEnter;
+#endif
+
+constexpr std::size_t kKeys = GLFW_KEY_LAST + 1;
 constexpr std::size_t kButtons = IM_ARRAYSIZE(ImGuiIO::MouseDown);
 
 struct NamedKey {
@@ -45,7 +49,7 @@ constexpr NamedKey kNamedKeys[] = {
     {"]", GLFW_KEY_RIGHT_BRACKET},
 };
 
-constexpr std::pair<ImGuiKey_, Key> kImGuiKeys[] = {
+constexpr std::pair<int, Key> kImGuiKeys[] = {
     {ImGuiKey_Tab, GLFW_KEY_TAB},
     {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
     {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
@@ -61,7 +65,7 @@ constexpr std::pair<ImGuiKey_, Key> kImGuiKeys[] = {
     {ImGuiKey_Space, GLFW_KEY_SPACE},
     {ImGuiKey_Enter, GLFW_KEY_ENTER},
     {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
-    {ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+    {ImGuiKey_KeypadEnter, GLFW_KEY_KP_ENTER},
     {ImGuiKey_A, GLFW_KEY_A},
     {ImGuiKey_C, GLFW_KEY_C},
     {ImGuiKey_V, GLFW_KEY_V},
@@ -72,7 +76,7 @@ constexpr std::pair<ImGuiKey_, Key> kImGuiKeys[] = {
 
 bool isModifier(Key key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-/// The inputs changed by the events already applied to a picture.
+/// The inputs changed by the events already applied to a frame.
 struct ChangedInputs {
   std::bitset<kKeys> keys;
   std::bitset<kButtons> buttons;
@@ -86,7 +90,7 @@ bool inRange(int code, std::size_t count) {
   return code >= 0 && static_cast<std::size_t>(code) < count;
 }
 
-/// Whether the picture can distinguish `event` from the events applied before.
+/// Whether Dear ImGui can distinguish `event` from the events applied before.
 bool separable(const InputEvent& event, const ChangedInputs& changed) {
   const auto code = static_cast<std::size_t>(event.code);
   switch (event.kind) {
@@ -96,8 +100,9 @@ bool separable(const InputEvent& event, const ChangedInputs& changed) {
     case InputEvent::Kind::wheel:
       return changed.buttons.none();
     case InputEvent::Kind::button:
-      // Items that others may overlap, such as tabs, are pressed only if the mouse was over them in
-      // the previous picture, and a dragged item must receive the last move before the release.
+      // Items that may be overlapped, such as tabs, react to a press only if the mouse was over
+      // them in the previous frame, and a dragged item must receive the last move before the
+      // release.
       return !changed.mouse_moved && !changed.buttons[code] && !changed.plain_key;
     case InputEvent::Kind::character:
       return true;
@@ -148,8 +153,8 @@ bool isKnown(const InputEvent& event) {
 }  // namespace
 
 Key keyNamed(const std::string& name) {
-  for (const NamedKey& known : kNamedKeys) {
-    if (name == known.name) return known.key;
+  for (const NamedKey& named : kNamedKeys) {
+    if (name == named.name) return named.key;
   }
   if (name.size() == 1 && std::isalnum(static_cast<unsigned char>(name[0])) != 0) {
     return std::toupper(static_cast<unsigned char>(name[0]));
@@ -162,8 +167,8 @@ Key keyNamed(const std::string& name) {
 }
 
 std::string keyName(Key key) {
-  for (const NamedKey& known : kNamedKeys) {
-    if (key == known.key) return known.name;
+  for (const NamedKey& named : kNamedKeys) {
+    if (key == named.key) return named.name;
   }
   if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12)
     return std::string("F").append(std::to_string(key - GLFW_KEY_F1 + 1));

@@ -30,11 +30,10 @@ std::unique_ptr<Recording> open(FileDescriptor file, std::string name) {
   return std::make_unique<Reader>(std::move(file), std::move(name));
 }
 
-/// A recording format.
 struct RecordingFormat {
   std::string_view extension;
   std::unique_ptr<Recording> (*open)(FileDescriptor, std::string name);
-  /// Null: does not hold boxes. An empty path: an unnamed file.
+  /// Null if the format does not hold boxes. An empty path: an unnamed file.
   std::unique_ptr<RecordingFile> (*write)(const std::filesystem::path&, const SceneInfo&,
                                           const RecordingOrigin&);
 };
@@ -46,7 +45,7 @@ constexpr RecordingFormat kFormats[] = {
 };
 
 /// The format of an extension; the first format if it is unknown.
-const RecordingFormat& formatOf(const std::filesystem::path& extension) {
+const RecordingFormat& formatOf(std::string_view extension) {
   const auto* format = std::ranges::find(kFormats, extension, &RecordingFormat::extension);
   return format == std::end(kFormats) ? kFormats[0] : *format;
 }
@@ -88,7 +87,7 @@ std::string_view recordingExtension(const SceneInfo& scene) {
 }
 
 void requireHolds(const std::filesystem::path& path, const SceneInfo& scene) {
-  const RecordingFormat& format = formatOf(path.extension());
+  const RecordingFormat& format = formatOf(path.extension().string());
   if (format.extension == kBroadmarkExtension || fitsAabbs(scene)) return;
   throw InputError(fmt::format(
       "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
@@ -149,7 +148,7 @@ const std::string& Recording::hash() {
 }
 
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path) {
-  return formatOf(path.extension()).open(openForReading(path), path.string());
+  return formatOf(path.extension().string()).open(openForReading(path), path.string());
 }
 
 OriginalRecording::OriginalRecording(FileDescriptor file, std::string name)
@@ -188,7 +187,7 @@ std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
                                  const RecordingOrigin& origin) {
-  const RecordingFormat& format = formatOf(path.extension());
+  const RecordingFormat& format = formatOf(path.extension().string());
   if (format.write == nullptr) {
     throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
                                  fmt::join(boxRecordingExtensions(), " or ")));
