@@ -1,4 +1,4 @@
-// Results files: one of their cases, on what it ran on.
+// Results files: one of their cases, on the recording it ran on.
 
 #include "sources/results.h"
 
@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 
 bool hasMismatch(const CaseResult& result) { return !result.differences.empty(); }
 
-/// A few of the ids that can be given.
+/// A few ids that can be passed to --case.
 std::string someIds(const Results& results) {
-  constexpr std::size_t kShown = 3;
+  constexpr std::size_t kMaxShown = 3;
   std::vector<std::string> wrong;
   for (const CaseResult& result : results.cases) {
     if (hasMismatch(result)) wrong.push_back(result.id);
@@ -30,21 +30,22 @@ std::string someIds(const Results& results) {
     return fmt::format("all answers are right; e.g. '{}'", results.cases.front().id);
   }
   std::string text = "with wrong answers:";
-  for (std::size_t i = 0; i < std::min(wrong.size(), kShown); ++i) {
+  for (std::size_t i = 0; i < std::min(wrong.size(), kMaxShown); ++i) {
     text += fmt::format("{} '{}'", i > 0 ? "," : "", wrong[i]);
   }
-  if (wrong.size() > kShown) text += fmt::format(" and {} more", wrong.size() - kShown);
+  if (wrong.size() > kMaxShown) text += fmt::format(" and {} more", wrong.size() - kMaxShown);
   return text;
 }
 
-/// The result of this id; of several the first with a mismatch.
+/// Returns the result with this id; if there are several, the first with a mismatch.
 const CaseResult& resultOf(const Results& results, const std::string& id, const std::string& file) {
   const CaseResult* found = nullptr;
+  const std::string current_id = currentCaseId(id);
   std::vector<std::string> ids;
   for (const CaseResult& result : results.cases) {
     ids.push_back(result.id);
     const bool better = found == nullptr || (!hasMismatch(*found) && hasMismatch(result));
-    if (result.id == id && better) found = &result;
+    if (result.id == current_id && better) found = &result;
   }
   if (found != nullptr) return *found;
   const std::string nearest = nearestName(id, ids);
@@ -55,7 +56,7 @@ const CaseResult& resultOf(const Results& results, const std::string& id, const 
 
 const Algorithm& algorithmOf(const CaseResult& result, const std::vector<Algorithm>& known) {
   if (const Algorithm* found = findAlgorithm(result.algorithm, known)) return *found;
-  // Never loaded unasked: that would run whatever code a data file names.
+  // Not loaded automatically: a data file must not choose the code to run.
   if (!result.plugin.empty()) {
     throw InputError(
         fmt::format("algorithm '{}' is in a library that is not loaded: add --plugin {}",
@@ -64,16 +65,16 @@ const Algorithm& algorithmOf(const CaseResult& result, const std::vector<Algorit
   return requireAlgorithm(result.algorithm, known);
 }
 
-/// The simulation that a case ran on, again.
-Source simulationAgain(const RecordingReference& reference, const fs::path& results_file) {
+/// Recreates the simulation that a case ran on.
+Source recreatedSimulation(const RecordingReference& reference, const fs::path& results_file) {
   ParameterValues parameters = reference.scene_parameters;
   if (const auto file = parameters.extract(kSceneFile)) {
-    NamedSource scene(statedPath(results_file, file.mapped()).string());
+    NamedSource scene(resolvedPath(results_file, file.mapped()).string());
     auto simulation = parseSceneParameters(scene.text(), scene.name());
     setParameters(*simulation, parameters);
     return simulationSource(std::move(simulation));
   }
-  const auto engine = parameters.find("engine");  // which brings parameters of its own
+  const auto engine = parameters.find("engine");  // adds parameters
   std::string name = reference.scene.name;
   if (reference.reading.contains("swept") && name.ends_with(kSweptSuffix)) {
     name.resize(name.size() - kSweptSuffix.size());
@@ -83,16 +84,16 @@ Source simulationAgain(const RecordingReference& reference, const fs::path& resu
   return simulationSource(std::move(simulation));
 }
 
-/// What a case ran on: opening it checks that it is the same.
+/// Source that a case ran on; opening it verifies the hash.
 Source sourceOf(const RecordingReference& reference, const fs::path& results_file) {
   ReadingOptions reading;
   setParameters(reading, reference.reading);
   Source source;
   if (reference.path.empty()) {
-    source = simulationAgain(reference, results_file);
+    source = recreatedSimulation(reference, results_file);
     if (reading.swept) sweepBoxes(source);
   } else {
-    source = fileSource({statedPath(results_file, reference.path).string()}, reading);
+    source = fileSource({resolvedPath(results_file, reference.path).string()}, reading);
   }
   source.reference.swept = reference.swept;
   source.expected_hash = reference.hash;
@@ -127,9 +128,9 @@ std::string obstacleTo(const CaseResult& result, const fs::path& results_file,
   }
   const std::string& stated = result.recording.path;
   if (stated.empty()) return "";
-  const std::string file = statedPath(results_file, stated).string();
+  const std::string file = resolvedPath(results_file, stated).string();
   if (fs::exists(file) || importOf(file)) return "";
-  return fmt::format("{}: no such recording any more", file);
+  return fmt::format("{}: the recording no longer exists", file);
 }
 
 namespace sources::results {

@@ -4,9 +4,19 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 namespace broadmark {
+namespace {
+
+std::string parameterParts(const ParameterValues& parameters) {
+  std::string parts;
+  for (const auto& [key, value] : parameters) parts += fmt::format("/{}={}", key, value);
+  return parts;
+}
+
+}  // namespace
 
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
               ParameterValues parameters, AnswerKind answer) {
@@ -26,8 +36,19 @@ std::string caseName(const Case& test_case) {
   if (test_case.answer != AnswerKind::pairs) {
     name += fmt::format("/{}", kAnswerKinds.nameOf(test_case.answer));
   }
-  for (const auto& [key, value] : test_case.parameters) name += fmt::format("/{}={}", key, value);
-  return name;
+  return name + parameterParts(test_case.parameters);
+}
+
+std::string currentCaseId(std::string_view id) {
+  ParameterValues parameters;
+  for (std::size_t slash = id.rfind('/'); slash != id.npos; slash = id.rfind('/')) {
+    const std::string_view part = id.substr(slash + 1);
+    const std::size_t equals = part.find('=');
+    if (equals == part.npos) break;
+    parameters.emplace(currentParameterName(part.substr(0, equals)), part.substr(equals + 1));
+    id = id.substr(0, slash);
+  }
+  return std::string(id) + parameterParts(parameters);
 }
 
 std::unique_ptr<BroadPhase> makeInstance(const Case& test_case) {

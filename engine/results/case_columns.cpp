@@ -59,15 +59,15 @@ ColumnUnit unitOf(std::string_view key) {
   return key.ends_with("_bytes") ? ColumnUnit::bytes : ColumnUnit::none;
 }
 
-JsonPlace optional(std::string path) { return {.path = std::move(path), .optional = true}; }
-JsonPlace derived(std::string path) {
+JsonField optional(std::string path) { return {.path = std::move(path), .optional = true}; }
+JsonField derived(std::string path) {
   return {.path = std::move(path), .optional = true, .derived = true};
 }
 
 /// A column with the value get(result) or get(result, summary). The title defaults to the key.
 template <class Get>
-CaseColumn computed(const std::string& key, std::string_view title, JsonPlace json, Get get,
-                    ColumnShown shown = {}) {
+CaseColumn computed(const std::string& key, std::string_view title, JsonField json, Get get,
+                    ColumnDisplay shown = {}) {
   const std::string words = withSpaces(title.empty() ? key : title);
   if (shown.heading.empty()) shown.heading = words;
   return {.key = key,
@@ -86,16 +86,16 @@ CaseColumn computed(const std::string& key, std::string_view title, JsonPlace js
 
 /// A column for the member that get(result) refers to; its JSON path defaults to the key.
 template <class Get>
-CaseColumn stored(const std::string& key, std::string_view title, JsonPlace json, Get get,
-                  ColumnShown shown = {}) {
+CaseColumn stored(const std::string& key, std::string_view title, JsonField json, Get get,
+                  ColumnDisplay shown = {}) {
   if (json.path.empty()) json.path = key;
   CaseColumn column = computed(key, title, std::move(json), get, std::move(shown));
-  column.read = [get](const JsonFields& fields, const char* at, CaseResult& result) {
+  column.read = [get](const JsonFields& fields, const char* field, CaseResult& result) {
     auto& value = std::invoke(get, result);
     if constexpr (std::is_enum_v<std::remove_reference_t<decltype(value)>>) {
-      value = fields.named(at, namesOf(value));
+      value = fields.named(field, namesOf(value));
     } else {
-      fields.read(at, value);
+      fields.read(field, value);
     }
   };
   return column;
@@ -103,8 +103,8 @@ CaseColumn stored(const std::string& key, std::string_view title, JsonPlace json
 
 /// A time of the summary.
 CaseColumn summaryTime(const std::string& key, std::string_view title, const char* path,
-                       double Summary::*time, ColumnShown shown) {
-  shown.known = Known::timed;
+                       double Summary::*time, ColumnDisplay shown) {
+  shown.known = Availability::timed;
   shown.figure = true;
   shown.meaningful = hasFrames;
   const auto get = [time](R, S summary) { return summary.*time; };
@@ -119,8 +119,9 @@ CaseColumn ci95Bound(const std::string& key, std::string_view title, const char*
   });
 }
 
-ColumnShown wrongPairs(int place) {
-  return {.known = Known::checked, .terminal = place, .figure = true, .meaningful = hasFrames};
+ColumnDisplay wrongPairs(int place) {
+  return {
+      .known = Availability::checked, .terminal = place, .figure = true, .meaningful = hasFrames};
 }
 
 double meanInitialisation(R result) {
@@ -210,9 +211,9 @@ std::vector<CaseColumn> times() {
                 &Interval::high),
       computed("outliers", "", derived("summary/outliers"),
                [](R, S summary) { return summary.outliers; },
-               {.known = Known::timed, .figure = true}),
+               {.known = Availability::timed, .figure = true}),
       computed("initialize_seconds", "initialisation", {"initialize_ns", JsonForm::seconds},
-               meanInitialisation, {.known = Known::timed, .figure = true})};
+               meanInitialisation, {.known = Availability::timed, .figure = true})};
   for (const auto& [phase, name] : kPhases.entries) {
     if (phase == Phase::total) continue;  // covered by seconds_per_frame
     columns.push_back(computed(fmt::format("{}_seconds", name), name,
@@ -241,13 +242,13 @@ std::vector<CaseColumn> counts() {
                [](R r) { return r.bodies ? std::optional(r.bodies->max) : std::nullopt; },
                {.particular = true}),
       stored("missed", "", {}, &CaseResult::missed_count, wrongPairs(90)),
-      // Earlier files have the sum of the next two, as "extra".
+      // Early files have the sum of the next two, as "extra".
       computed("false", "", derived("false"), &CaseResult::false_count, wrongPairs(100)),
       computed("allowed_extra", "", derived("allowed_extra"), &CaseResult::allowed_extra_count,
                wrongPairs(110)),
       stored("invalid", "", {}, &CaseResult::invalid_count, wrongPairs(120)),
       computed("mismatches", "", {}, &CaseResult::mismatchedFrames,
-               {.csv = false, .known = Known::checked, .inspector = 80}),
+               {.csv = false, .known = Availability::checked, .inspector = 80}),
       stored("peak_bytes", "memory", optional("peak_bytes"), &CaseResult::peak_bytes,
              {.report = 110, .rank = 3, .figure = true})};
   for (const auto& [counter, name] : kProcessorCounters.entries) {
@@ -272,8 +273,8 @@ std::vector<CaseColumn> makeColumns() {
 bool CaseColumn::isText() const { return std::holds_alternative<std::string>(value({}, {})); }
 
 ColumnValue CaseColumn::valueOf(R result, S summary) const {
-  if (shown.known == Known::timed && result.repetitions.empty()) return {};
-  if (shown.known == Known::checked && !result.checked) return {};
+  if (shown.known == Availability::timed && result.repetitions.empty()) return {};
+  if (shown.known == Availability::checked && !result.checked) return {};
   return value(result, summary);
 }
 
@@ -287,7 +288,7 @@ const std::vector<CaseColumn>& caseColumns() {
   return columns;
 }
 
-std::vector<const CaseColumn*> caseColumns(int ColumnShown::*place) {
+std::vector<const CaseColumn*> caseColumns(int ColumnDisplay::*place) {
   std::vector<const CaseColumn*> columns;
   for (const CaseColumn& column : caseColumns()) {
     if (column.shown.*place > 0) columns.push_back(&column);

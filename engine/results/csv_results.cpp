@@ -31,7 +31,7 @@ std::string fieldOf(const ColumnValue& value, ColumnUnit unit) {
   return unit == ColumnUnit::seconds ? fmt::format("{:.9g}", *number) : fmt::format("{}", *number);
 }
 
-std::string headerOf(bool ColumnShown::*table) {
+std::string headerOf(bool ColumnDisplay::*table) {
   std::string text;
   for (const CaseColumn& column : caseColumns()) {
     if (column.shown.*table) text += (text.empty() ? "" : ",") + column.key;
@@ -39,7 +39,7 @@ std::string headerOf(bool ColumnShown::*table) {
   return text;
 }
 
-std::string rowOf(bool ColumnShown::*table, const CaseResult& result, const Summary& summary) {
+std::string rowOf(bool ColumnDisplay::*table, const CaseResult& result, const Summary& summary) {
   std::string text;
   for (const CaseColumn& column : caseColumns()) {
     if (!(column.shown.*table)) continue;
@@ -51,14 +51,14 @@ std::string rowOf(bool ColumnShown::*table, const CaseResult& result, const Summ
 
 }  // namespace
 
-FrameTable::FrameTable() : text_(headerOf(&ColumnShown::frames) + ",repetition,frame") {
+FrameTable::FrameTable() : text_(headerOf(&ColumnDisplay::frames) + ",repetition,frame") {
   for (const auto& phase : kPhases.entries) text_ += fmt::format(",{}_ns", phase.name);
   for (const auto& count : kFrameCounts.entries) text_ += fmt::format(",{}", count.name);
   text_ += ",checked,disturbed\n";
 }
 
 void FrameTable::begin(const CaseResult& result) {
-  case_ = rowOf(&ColumnShown::frames, result, {});  // identity columns do not need the summary
+  case_ = rowOf(&ColumnDisplay::frames, result, {});  // identity columns do not need the summary
 }
 
 void FrameTable::add(const FrameRow& row) {
@@ -73,9 +73,9 @@ void FrameTable::add(const FrameRow& row) {
 }
 
 std::string formatCsvResults(const Results& results) {
-  std::string csv = headerOf(&ColumnShown::csv) + '\n';
+  std::string csv = headerOf(&ColumnDisplay::csv) + '\n';
   for (const CaseResult& result : results.cases) {
-    csv += rowOf(&ColumnShown::csv, result, result.summary()) + '\n';
+    csv += rowOf(&ColumnDisplay::csv, result, result.summary()) + '\n';
   }
   return csv;
 }

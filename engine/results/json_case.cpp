@@ -5,6 +5,7 @@
 #include <limits>
 #include <variant>
 
+#include "broadmark/harness/case.h"
 #include "broadmark/results/case_columns.h"
 
 namespace broadmark {
@@ -134,8 +135,8 @@ Json toJson(const FrameDifference& d) {
           {"invalid", toJson(d.invalid_pairs)}};
 }
 
-/// Files from before the distinction of false and allowed extra pairs have "extra" for both, with
-/// the count of the false ones as "forbidden_count".
+/// Early files do not distinguish false and allowed extra pairs: "extra" holds both, and
+/// "forbidden_count" the number of false ones.
 FrameDifference differenceFrom(const JsonFields& json) {
   const auto count = [&](const char* key) { return json.integer<std::uint64_t>(key); };
   const auto pairs = [&](const char* key) { return pairsFrom(json.array(key), json.path(key)); };
@@ -192,6 +193,7 @@ CaseResult caseFrom(const JsonFields& json) {
   for (const CaseColumn& column : caseColumns()) {
     if (column.read) readColumn(column, column.json.path, json, result);
   }
+  result.id = currentCaseId(result.id);
   readRecording(json.object("recording"), result.recording);
   result.threads = json.integer<int>("threads", 1);
   result.vectorised = json.boolean("vectorised");

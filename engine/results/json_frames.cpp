@@ -64,33 +64,33 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
   return repetitions;
 }
 
-/// An array for each name of a table: get(value of the name, index) for each of `count` indices.
+/// An array for each name of a table, with the elements get(value, index), index < count.
 template <class Table, class Get>
 Json arraysOf(const Table& table, std::size_t count, Get&& get) {
   Json json = Json::object();
   for (const auto& [which, name] : table.entries) {
     Json& array = json[std::string(name)] = Json::array();
-    for (std::size_t place = 0; place < count; ++place) array.push_back(get(which, place));
+    for (std::size_t index = 0; index < count; ++index) array.push_back(get(which, index));
   }
   return json;
 }
 
-/// Calls take(value of the name, index, element, name for messages) for each element of these
-/// arrays. Each array must have `count` elements; `complaint` is the error message.
-template <class Table, class Take>
+/// Calls read(value, index, element, name for messages) for each element of these arrays. Each
+/// array must have `count` elements; otherwise throws InputError with `complaint`.
+template <class Table, class Read>
 void readArrays(const JsonFields& json, const Table& table, std::size_t count,
-                std::string_view complaint, Take&& take) {
+                std::string_view complaint, Read&& read) {
   for (const auto& [which, name] : table.entries) {
     const std::string key(name);
     if (!json.has(key.c_str())) continue;
     const Json& array = json.array(key.c_str());
     const std::string path = json.path(key.c_str());
     if (array.size() != count) throw InputError(fmt::format("{}: {}", path, complaint));
-    for (std::size_t place = 0; place < count; ++place) take(which, place, array[place], path);
+    for (std::size_t index = 0; index < count; ++index) read(which, index, array[index], path);
   }
 }
 
-/// Counts of wrong pairs only where there are any.
+/// Counts of wrong pairs only if there are any.
 Json frameCountsToJson(const std::vector<FrameCounts>& frames) {
   const auto get = [&](FrameCount which, std::size_t f) { return frames[f][which]; };
   Json json = arraysOf(kFrameCounts, frames.size(), get);

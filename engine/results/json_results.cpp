@@ -1,5 +1,5 @@
-// Results as JSON ("schema": "broadmark-results/2") and back: as one document, or as lines that are
-// complete JSON each. Earlier files ("broadmark-results/1") are read, too.
+// Results as JSON ("schema": "broadmark-results/2") and back: as one document, or as lines of
+// JSON. Also reads earlier files ("broadmark-results/1").
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@ namespace broadmark {
 namespace {
 
 /// Calls visit(key, value) for each JSON field of an environment.
-template <class SomeEnvironment, class Visit>
-void visitFields(SomeEnvironment& e, Visit&& visit) {
+template <class EnvironmentType, class Visit>
+void visitFields(EnvironmentType& e, Visit&& visit) {
   visit("host", e.host);
   visit("cpu", e.cpu);
   visit("logical_cores", e.logical_cores);
@@ -80,7 +80,7 @@ Results documentFrom(const JsonFields& file) {
 }
 
 /// Parses one line after the first.
-void takeLine(Results& results, const JsonFields& line) {
+void readLine(Results& results, const JsonFields& line) {
   if (results.complete) throw InputError(line.name() + ": after the line that ends the results");
   if (line.has("environment")) {
     results.environments.push_back(environmentFrom(line.object("environment")));
@@ -94,7 +94,7 @@ void takeLine(Results& results, const JsonFields& line) {
 }
 
 /// Splits off the first line of a text.
-std::string_view takeFirstLine(std::string_view& text) {
+std::string_view splitFirstLine(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
@@ -106,18 +106,18 @@ Results linesFrom(const JsonFields& first, std::string_view rest, std::string_vi
   results.options = first.texts("options");
   for (int number = 2; !rest.empty(); ++number) {
     const bool whole = rest.find('\n') != std::string_view::npos;
-    const std::string_view line = takeFirstLine(rest);
+    const std::string_view line = splitFirstLine(rest);
     if (!whole && jsonOrNull(line).is_null()) break;  // the run ended during the write
-    const std::string place = fmt::format("{}: line {}", name, number);
-    const Json json = parseJson(line, place);
-    takeLine(results, JsonFields(json, place));
+    const std::string location = fmt::format("{}: line {}", name, number);
+    const Json json = parseJson(line, location);
+    readLine(results, JsonFields(json, location));
   }
   return results;
 }
 
 /// The first line of JSON Lines, or null for other files.
 Json headOfLines(std::string_view text) {
-  Json head = jsonOrNull(takeFirstLine(text));
+  Json head = jsonOrNull(splitFirstLine(text));
   const auto has = [&](const char* key) { return head.contains(key); };
   // A document on one line, even a damaged one, has one of these keys.
   const bool is_document = has("cases") || has("environments") || has("environment");
@@ -176,7 +176,7 @@ Results parseResults(std::string_view text, std::string_view name) {
   const Json json = head.is_null() ? parseJson(text, name) : head;
   const JsonFields file(json, std::string(name));
   requireResults(file, name);
-  takeFirstLine(text);
+  splitFirstLine(text);
   Results results = head.is_null() ? documentFrom(file) : linesFrom(file, text, name);
   requireEnvironments(results, name);
   return results;

@@ -24,24 +24,24 @@ MergedResults mergeResults(const std::vector<Results>& runs) {
   MergedResults merged{.results = {.complete = true}};
   std::vector<Environment>& environments = merged.results.environments;
   std::vector<CaseResult>& cases = merged.results.cases;
-  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> places;
+  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> index_of;
   for (const Results& source : runs) {
     merged.results.complete &= source.complete;
     for (CaseResult result : source.cases) {
       const Environment& environment = source.environments[result.environment];
-      const auto known = std::ranges::find_if(
+      const auto match = std::ranges::find_if(
           environments, [&](const Environment& other) { return isSame(other, environment); });
-      result.environment = static_cast<std::size_t>(known - environments.begin());
-      if (known == environments.end()) environments.push_back(environment);
-      const auto [at, is_new] =
-          places.try_emplace({result.environment, result.recording.hash, result.id}, cases.size());
+      result.environment = static_cast<std::size_t>(match - environments.begin());
+      if (match == environments.end()) environments.push_back(environment);
+      const auto [entry, is_new] = index_of.try_emplace(
+          {result.environment, result.recording.hash, result.id}, cases.size());
       if (is_new) {
         cases.push_back(std::move(result));
         continue;
       }
       ++merged.repeated;
-      CaseResult& present = cases[at->second];
-      if (result.isComplete() || !present.isComplete()) present = std::move(result);
+      CaseResult& previous = cases[entry->second];
+      if (result.isComplete() || !previous.isComplete()) previous = std::move(result);
     }
   }
   return merged;

@@ -1,4 +1,4 @@
-// The result formats behind resultWriters(): one function and one file each.
+// The formats of resultWriters(): each has a function and a file.
 #pragma once
 
 #include <string>

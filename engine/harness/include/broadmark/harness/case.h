@@ -1,8 +1,9 @@
-// A case: an algorithm with all of its settings.
+// Cases: the units of a benchmark.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "broadmark/algorithm.h"
 #include "broadmark/execution.h"
@@ -18,7 +19,7 @@ enum class AnswerKind { pairs, events };
 inline constexpr NameTable kAnswerKinds{
     {NamedValue{AnswerKind::pairs, "pairs"}, {AnswerKind::events, "events"}}};
 
-/// What to run.
+/// An algorithm with its settings.
 struct Case {
   Algorithm algorithm;
   Isa isa = Isa::scalar;
@@ -28,15 +29,18 @@ struct Case {
   AnswerKind answer = AnswerKind::pairs;
 };
 
-/// A case of `algorithm`; settings that it ignores are left at neutral values.
+/// A case of `algorithm`, with neutral values for settings that it ignores.
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
               ParameterValues parameters, AnswerKind answer = AnswerKind::pairs);
 
 /// "bf-simd-mt/avx2/t4/events/key=value": the part of a case's id without the recording.
 std::string caseName(const Case&);
 
-/// A new instance of the case's algorithm with its parameters. Throws InputError for an invalid
-/// one.
+/// A case's id with the present names of its parameters: files may hold former names.
+std::string currentCaseId(std::string_view id);
+
+/// Creates an instance of the case's algorithm with its parameters. Throws InputError for an
+/// invalid one.
 std::unique_ptr<BroadPhase> makeInstance(const Case&);
 
 }  // namespace broadmark

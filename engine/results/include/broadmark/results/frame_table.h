@@ -14,15 +14,15 @@ struct FrameRow {
   FrameTimes times;
   FrameCounts counts;
   bool changes_known = false;  ///< FrameCount::changed_bodies was counted
-  bool checked = false;        ///< the counts of wrong pairs mean something
-  bool disturbed = false;      ///< the frame was drawn while it was timed
+  bool checked = false;        ///< the counts of wrong pairs are meaningful
+  bool disturbed = false;      ///< the frame was drawn during timing
 };
 
 class FrameTable {
  public:
   FrameTable();
 
-  /// Sets the case of the rows added from now on.
+  /// Sets the case of subsequent rows.
   void begin(const CaseResult& result);
   void add(const FrameRow& row);
   [[nodiscard]] const std::string& text() const { return text_; }

@@ -9,12 +9,12 @@
 namespace broadmark {
 
 struct MergedResults {
-  Results results;           ///< complete if all runs are
+  Results results;           ///< complete if all runs are complete
   std::size_t repeated = 0;  ///< cases present in several runs
 };
 
-/// All cases, in order. Of a case run several times by the same build on the same machine only the
-/// latest result is kept, with complete results preferred. `options` are left to the caller.
+/// Merges all cases, in order. If the same build ran a case several times on the same machine,
+/// retains only the latest result, preferably a complete one. Leaves `options` to the caller.
 MergedResults mergeResults(const std::vector<Results>& runs);
 
 }  // namespace broadmark

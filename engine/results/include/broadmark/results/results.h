@@ -23,8 +23,8 @@ struct ResultWriter {
   std::string_view name;  ///< the command line option, without dashes: "json"
   std::string_view doc;
   std::string (*format)(const Results&);
-  /// For text that can be written during a run: the parts before and after the cases, and each
-  /// case; `format` concatenates them. Null where the whole must be rewritten.
+  /// Functions to write text during a run: the parts before and after the cases, and each
+  /// case; `format` concatenates them. Null if the whole text must be rewritten.
   struct Lines {
     std::string (*before)(const Results&);
     std::string (*one)(const CaseResult&);
