@@ -19,10 +19,10 @@ using Clock = std::chrono::steady_clock;
 
 /// Minimum number of rounds.
 constexpr std::size_t kMinRounds = 60;
-/// Growth of the rounds before the next evaluation: intervals narrow with the root of the rounds.
+/// Growth of the number of rounds between reviews: intervals narrow with its square root.
 constexpr double kReviewGrowth = 1.3;
 
-/// All sides, sorted by the median of their ratios to the first side.
+/// Sorts the sides by the median of their ratios to the first side.
 std::vector<std::size_t> fastestFirst(const DuelResult& result) {
   std::vector<double> medians;
   for (std::size_t side = 0; side < result.sides.size(); ++side) {
@@ -40,7 +40,7 @@ std::vector<DuelRank> ranking(const DuelResult& result) {
     ranking.push_back({.side = side, .ratio = {1, {1, 1}}});
     if (side != 0) ranking.back().ratio = result.ratio(side, 0);
   }
-  std::size_t first = 0;  // of the present rank
+  std::size_t first = 0;  // of the current rank
   for (std::size_t i = 1; i < ranking.size(); ++i) {
     const Interval ratio = result.ratio(ranking[i].side, ranking[first].side).ci95;
     if (verdictOn(ratio, result.margin) == Verdict::slower) first = i;
@@ -57,7 +57,7 @@ class Duel {
     RunPolicy policy = RunPolicy::unlimited(options.check);
     for (const DuelSide& side : sides) {
       runs_.push_back(
-          std::make_unique<CaseRun>(side.test_case, policy, side.make_host, options.cancelled));
+          std::make_unique<CaseRun>(side.test_case, policy, side.make_executor, options.cancelled));
       result_.sides.push_back({.name = side.name});
     }
   }
@@ -81,12 +81,12 @@ class Duel {
   }
 
   /// Calls act(side) in random order; ends the duel if act returns false.
-  template <class Act>
-  void takeTurns(Act&& act) {
+  template <class Action>
+  void runInRandomOrder(Action&& action) {
     std::ranges::shuffle(order_, random_);
     for (const std::size_t side : order_) {
       if (options_.cancelled && options_.cancelled()) throw Cancelled();
-      if (!act(side)) return fail(side);
+      if (!action(side)) return fail(side);
     }
   }
 
@@ -98,7 +98,7 @@ class Duel {
 
   void runPass(FrameSource& frames, bool checked) {
     const Frame initial = frames.rewind();
-    takeTurns([&](std::size_t side) { return runs_[side]->start(frames.scene(), initial); });
+    runInRandomOrder([&](std::size_t side) { return runs_[side]->start(frames.scene(), initial); });
     while (!ended_) {
       const std::optional<Frame> frame = frames.next();
       if (!frame) return;
@@ -110,7 +110,7 @@ class Duel {
 
   void runRound(const Frame& frame) {
     std::vector<double> seconds(runs_.size());
-    takeTurns([&](std::size_t side) {
+    runInRandomOrder([&](std::size_t side) {
       const bool running = runs_[side]->step(frame);
       // The ratio is defined even below the clock's resolution.
       const auto ns = std::max<std::int64_t>(runs_[side]->times()[Phase::total], 1);
@@ -124,13 +124,13 @@ class Duel {
   }
 
   void check(const Frame& frame) {
-    takeTurns([&](std::size_t side) {
+    runInRandomOrder([&](std::size_t side) {
       runs_[side]->check(frame, oracle_);
       return runs_[side]->status() == Status::ok;
     });
   }
 
-  /// Decides whether the duel ends.
+  /// Decides whether to end the duel.
   void evaluate() {
     const std::size_t rounds = result_.rounds();
     result_.seconds = elapsed();
@@ -182,7 +182,7 @@ Estimate DuelResult::ratio(std::size_t a, std::size_t b) const {
   std::vector<double> logarithms = ratios(a, b);
   for (double& ratio : logarithms) ratio = std::log(ratio);
   const auto [median, interval] = medianOfSeries(logarithms);
-  // The largest and the least of five values contain the median in 94 of 100 cases.
+  // The range of five values contains the median in only 94 of 100 cases.
   if (rounds() <= 5) return {std::exp(median), {0, std::numeric_limits<double>::infinity()}};
   return {std::exp(median), {std::exp(interval.low), std::exp(interval.high)}};
 }

@@ -1,4 +1,4 @@
-// Minimum times, and an interval around their ratio.
+// Ratios of minimum times, and their intervals.
 
 #include "broadmark/analysis/run_ratio.h"
 
@@ -11,9 +11,9 @@
 namespace broadmark {
 namespace {
 
-/// Minimum number of other cases, or of baselines, to estimate the variation between runs. With
-/// fewer, half of the interval, as a logarithm, is assumed: whole runs on shared machines differ by
-/// that; a larger value where a side has a single repetition.
+/// Minimum numbers of other cases, and of baselines, to estimate the variation between runs. With
+/// fewer, a log half-width of the interval is assumed: whole runs on shared machines differ by
+/// it; more for a side with a single repetition.
 constexpr std::size_t kMinOthers = 3;
 constexpr std::size_t kMinBaselines = 3;
 constexpr double kUnknownRunSpread = 0.08;
@@ -52,46 +52,46 @@ std::size_t framesOf(std::span<const TimedRun> runs) {
   return frames == std::numeric_limits<std::size_t>::max() ? 0 : frames;
 }
 
-/// For each frame the expected minimum over `drawn` of the passes: the side with more passes would
+/// The expected minimum of each frame over `drawn` random passes: the side with more passes would
 /// otherwise have a lower minimum by chance.
-std::vector<double> leastTimes(std::span<const TimedRun> runs, std::size_t frames,
-                               std::size_t drawn) {
+std::vector<double> expectedMinimumTimes(std::span<const TimedRun> runs, std::size_t frames,
+                                         std::size_t drawn) {
   const std::vector<const PassTimes*> passes = passesOf(runs);
   const auto count = static_cast<double>(passes.size());
-  const auto few = static_cast<double>(drawn);
-  std::vector<double> least(frames);
+  const auto draws = static_cast<double>(drawn);
+  std::vector<double> minimum(frames);
   std::vector<double> times(passes.size());
   for (std::size_t frame = 0; frame < frames; ++frame) {
     std::ranges::transform(passes, times.begin(),
                            [&](const PassTimes* pass) { return (*pass)[frame]; });
     std::ranges::sort(times);
-    // The probability that the i-th is the minimum of those drawn.
-    double chance = few / count;
+    // The probability that the i-th smallest time is the minimum of the drawn ones.
+    double chance = draws / count;
     for (std::size_t i = 0; i + drawn <= times.size(); ++i) {
-      least[frame] += chance * times[i];
+      minimum[frame] += chance * times[i];
       const auto rank = static_cast<double>(i);
-      chance *= (count - few - rank) / (count - 1 - rank);
+      chance *= (count - draws - rank) / (count - 1 - rank);
     }
   }
-  return least;
+  return minimum;
 }
 
 /// The logarithm of the mean of each frame's minimum over the chosen passes.
-double levelOf(const std::vector<const PassTimes*>& passes, std::span<const std::size_t> chosen,
-               std::size_t frames) {
+double logMeanMinimum(const std::vector<const PassTimes*>& passes,
+                      std::span<const std::size_t> chosen, std::size_t frames) {
   double sum = 0;
   for (std::size_t frame = 0; frame < frames; ++frame) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t pass : chosen) least = std::min(least, (*passes[pass])[frame]);
-    sum += least;
+    double minimum = std::numeric_limits<double>::infinity();
+    for (const std::size_t pass : chosen) minimum = std::min(minimum, (*passes[pass])[frame]);
+    sum += minimum;
   }
   return std::log(sum);
 }
 
-/// Variance of levelOf() all passes, estimated from halves of them (McCarthy, 1969, "Pseudo-
-/// replication: half samples"): a statistic of half of the values varies about its mean as that of
-/// all does about the truth. At least two passes.
-double varianceOfLevel(const std::vector<const PassTimes*>& passes, std::size_t frames) {
+/// Variance of logMeanMinimum() all passes, estimated from halves of them (McCarthy, 1969, "Pseudo-
+/// replication: half samples"): a statistic of half of the values varies about its mean as the
+/// statistic of all values does about the truth. Requires at least two passes.
+double varianceOfLogMean(const std::vector<const PassTimes*>& passes, std::size_t frames) {
   constexpr int kHalves = 100;
   std::vector<std::size_t> order(passes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -100,38 +100,39 @@ double varianceOfLevel(const std::vector<const PassTimes*>& passes, std::size_t 
   std::vector<double> levels(kHalves);
   for (double& level : levels) {
     std::ranges::shuffle(order, random);
-    level = levelOf(passes, std::span(order).first(half), frames);
+    level = logMeanMinimum(passes, std::span(order).first(half), frames);
   }
   const double deviation = standardDeviation(levels);
-  // With an odd number of passes the halves differ by more.
+  // Corrects for the smaller half of an odd number of passes.
   return deviation * deviation * static_cast<double>(half) /
          static_cast<double>(passes.size() - half);
 }
 
-/// Noise between repetitions of both sides: half of an interval, as a logarithm.
+/// Noise between repetitions of both sides: a log half-width.
 double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRun> after,
                        std::size_t frames) {
   const std::vector<const PassTimes*> a = passesOf(before);
   const std::vector<const PassTimes*> b = passesOf(after);
   if (a.size() < 2 || b.size() < 2) return 0;
   const auto degrees = static_cast<double>(a.size() + b.size() - 2);
-  return studentT975(degrees) * std::sqrt(varianceOfLevel(a, frames) + varianceOfLevel(b, frames));
+  return studentT975(degrees) *
+         std::sqrt(varianceOfLogMean(a, frames) + varianceOfLogMean(b, frames));
 }
 
-/// Deviation of one further run from the mean of the baselines: half of an interval.
+/// Deviation of another run from the mean of the baselines: a log half-width.
 double baselineSpread(std::span<const TimedRun> before, std::size_t frames) {
   std::vector<double> levels;
   for (const TimedRun& timed : before) {
     const std::vector<const PassTimes*> passes = passesOf({&timed, 1});
     std::vector<std::size_t> all(passes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    levels.push_back(levelOf(passes, all, frames));
+    levels.push_back(logMeanMinimum(passes, all, frames));
   }
   const auto runs = static_cast<double>(levels.size());
   return studentT975(runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
 }
 
-/// Noise between frames: half of an interval of the sums' ratio, as a logarithm.
+/// Noise between frames: the log half-width of the interval of the sums' ratio.
 double frameNoise(std::span<const double> before, std::span<const double> after) {
   const auto log_of = [&](std::span<const std::size_t> drawn) {
     double a = 0;
@@ -155,38 +156,38 @@ double frameNoise(std::span<const double> before, std::span<const double> after)
 }
 
 /// A case in isolation from the other cases. Ratio and noise are logarithms.
-struct OwnRatio {
+struct IsolatedRatio {
   double before = 0;  ///< seconds
   double after = 0;
   double ratio = 0;
-  double noise = 0;        ///< within the runs: half of an interval
-  double spread = 0;       ///< between runs: half of an interval
+  double noise = 0;        ///< within the runs: a half-width
+  double spread = 0;       ///< between runs: a half-width
   bool identical = false;  ///< equal times in both runs
 };
 
-std::optional<OwnRatio> ownRatio(const PairedCase& paired) {
+std::optional<IsolatedRatio> isolatedRatio(const PairedCase& paired) {
   std::vector<TimedRun> runs;
   for (const CaseResult* result : paired.before) runs.push_back(runOf(*result));
   const TimedRun judged = runOf(*paired.after);
-  const std::span<const TimedRun> alone(&judged, 1);
-  const std::size_t frames = std::min(framesOf(runs), framesOf(alone));
+  const std::span<const TimedRun> judged_run(&judged, 1);
+  const std::size_t frames = std::min(framesOf(runs), framesOf(judged_run));
   if (frames == 0) return std::nullopt;
 
   const std::size_t drawn = std::min(passesOf(runs).size(), judged.passes.size());
-  const std::vector<double> a = leastTimes(runs, frames, drawn);
-  const std::vector<double> b = leastTimes(alone, frames, drawn);
-  OwnRatio own{.before = mean(a), .after = mean(b)};
+  const std::vector<double> a = expectedMinimumTimes(runs, frames, drawn);
+  const std::vector<double> b = expectedMinimumTimes(judged_run, frames, drawn);
+  IsolatedRatio own{.before = mean(a), .after = mean(b)};
   own.identical = runs.size() == 1 && runs.front().passes == judged.passes;
   if (own.identical) return own;
   own.ratio = std::log(own.after / own.before);
-  own.noise = std::hypot(frameNoise(a, b), repetitionNoise(runs, alone, frames));
+  own.noise = std::hypot(frameNoise(a, b), repetitionNoise(runs, judged_run, frames));
   own.spread =
       std::hypot(runs.size() < kMinBaselines ? kUnknownRunSpread : baselineSpread(runs, frames),
                  drawn < 2 ? kUnknownRepetitionSpread : 0);
   return own;
 }
 
-RunRatio ratioFrom(const OwnRatio& own, double drift, double half) {
+RunRatio ratioFrom(const IsolatedRatio& own, double drift, double half) {
   const double ratio = own.ratio - drift;
   return {.before = own.before,
           .after = own.after,
@@ -194,15 +195,15 @@ RunRatio ratioFrom(const OwnRatio& own, double drift, double half) {
           .drift = std::nullopt};
 }
 
-/// The cases of two runs, each in isolation: nothing for cases without times.
-class OwnRatios {
+/// The cases of two runs, each in isolation: nullopt for cases without times.
+class IsolatedRatios {
  public:
-  explicit OwnRatios(std::span<const PairedCase> cases) : cases_(cases) {
-    std::ranges::transform(cases, std::back_inserter(ratios_), ownRatio);
+  explicit IsolatedRatios(std::span<const PairedCase> cases) : cases_(cases) {
+    std::ranges::transform(cases, std::back_inserter(ratios_), isolatedRatio);
     for (std::size_t i = 0; i < ratios_.size(); ++i) drifts_.push_back(medianOfOthers(i));
   }
 
-  [[nodiscard]] const std::optional<OwnRatio>& operator[](std::size_t i) const {
+  [[nodiscard]] const std::optional<IsolatedRatio>& operator[](std::size_t i) const {
     return ratios_[i];
   }
 
@@ -210,8 +211,8 @@ class OwnRatios {
   /// of all others where those are fewer than two. Nothing without others.
   [[nodiscard]] std::optional<double> driftOf(std::size_t i) const { return drifts_[i]; }
 
-  /// Half of an interval of the other cases' deviations from their drift, which includes the noise
-  /// within their runs. Nothing if there are too few.
+  /// Half-width of the interval of the other cases' deviations from their drift, including the
+  /// noise within their runs. nullopt if there are too few.
   [[nodiscard]] std::optional<double> spreadWithout(std::size_t i) const {
     std::vector<double> deviations;
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
@@ -225,9 +226,9 @@ class OwnRatios {
 
  private:
   [[nodiscard]] std::optional<double> medianOfOthers(std::size_t i) const {
-    constexpr std::size_t kMinTurns = 2;
+    constexpr std::size_t kMinAlternating = 2;
     std::vector<double> others = othersOf(i, true);
-    if (others.size() < kMinTurns) others = othersOf(i, false);
+    if (others.size() < kMinAlternating) others = othersOf(i, false);
     if (others.empty()) return std::nullopt;
     return quantile(others, 0.5);
   }
@@ -243,14 +244,14 @@ class OwnRatios {
   }
 
   std::span<const PairedCase> cases_;
-  std::vector<std::optional<OwnRatio>> ratios_;
+  std::vector<std::optional<IsolatedRatio>> ratios_;
   std::vector<std::optional<double>> drifts_;
 };
 
 }  // namespace
 
 std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> cases) {
-  const OwnRatios own(cases);
+  const IsolatedRatios own(cases);
   std::vector<std::optional<RunRatio>> ratios(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (!own[i]) continue;
@@ -272,7 +273,7 @@ std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> ca
 }
 
 std::optional<RunRatio> ratioWithinRun(const CaseResult& before, const CaseResult& after) {
-  const std::optional<OwnRatio> own = ownRatio({.before = {&before}, .after = &after});
+  const std::optional<IsolatedRatio> own = isolatedRatio({.before = {&before}, .after = &after});
   if (!own) return std::nullopt;
   return ratioFrom(*own, 0, own->noise);
 }

@@ -58,26 +58,26 @@ class FilterTally {
   }
 
   [[nodiscard]] FilterStatistics statistics(std::uint32_t objects) const {
-    FilterStatistics figures;
+    FilterStatistics statistics;
     std::array<bool, LayerMatrix::kLayers> is_used{};
     std::map<std::uint32_t, std::uint32_t> worlds;
     for (std::uint32_t body = 0; body < objects; ++body) {
       is_used[filter_.layerOf(body)] = true;
       const BodyGroups groups = filter_.groupsOf(body);
-      figures.largest_world = std::max(figures.largest_world, ++worlds[groups.world]);
-      figures.tagged += groups.tags == BodyGroups::kNoTags ? 0 : 1;
+      statistics.largest_world = std::max(statistics.largest_world, ++worlds[groups.world]);
+      statistics.tagged += groups.tags == BodyGroups::kNoTags ? 0 : 1;
     }
-    figures.worlds = static_cast<std::uint32_t>(worlds.size());
+    statistics.worlds = static_cast<std::uint32_t>(worlds.size());
     const LayerMatrix matrix = filter_.matrix();
     for (std::size_t a = 0; a < is_used.size(); ++a) {
       if (!is_used[a]) continue;
-      figures.layers.push_back({a, bodies_[a] / frames_});
+      statistics.layers.push_back({a, bodies_[a] / frames_});
       for (std::size_t b = a; b < is_used.size(); ++b) {
         if (!is_used[b] || !matrix.collide(a, b)) continue;
-        figures.layer_pairs.push_back({a, b, pairs_[a][b] / frames_});
+        statistics.layer_pairs.push_back({a, b, pairs_[a][b] / frames_});
       }
     }
-    return figures;
+    return statistics;
   }
 
  private:
@@ -144,31 +144,31 @@ Changes changesBetween(std::span<const Aabb> before, std::span<const Aabb> boxes
 
 FrameStatistics frameStatistics(const SceneInfo& scene, const Frame& frame,
                                 std::span<const Aabb> before, std::size_t pairs) {
-  FrameStatistics figures{.frame = frame.index};
+  FrameStatistics statistics{.frame = frame.index};
   std::vector<double> extents;
   double filled = 0;
   for (const Aabb& box : frame.boxes) {
     if (isEmpty(box)) continue;
     extents.push_back(longestEdge(box));
     filled += volume(box);
-    if (!holdsCentre(scene.world, box)) ++figures.outside;
+    if (!holdsCentre(scene.world, box)) ++statistics.outside;
   }
-  figures.bodies = static_cast<std::uint32_t>(extents.size());
+  statistics.bodies = static_cast<std::uint32_t>(extents.size());
   if (!before.empty()) {
     const Changes changes = changesBetween(before, frame.boxes);
-    figures.changes = changes;
-    const double stayed = figures.bodies - changes.appeared;
+    statistics.changes = changes;
+    const double stayed = statistics.bodies - changes.appeared;
     const double moved = changes.changed - changes.appeared - changes.vanished;
-    if (stayed > 0) figures.moving_share = moved / stayed;
+    if (stayed > 0) statistics.moving_share = moved / stayed;
   }
-  if (extents.empty()) return figures;
-  figures.density = ratio(filled, volume(scene.world));
+  if (extents.empty()) return statistics;
+  statistics.density = ratio(filled, volume(scene.world));
   const auto [min, max] = std::ranges::minmax(extents);
-  figures.min_extent = min;
-  figures.median_extent = quantile(extents, 0.5);
-  figures.max_extent = max;
-  figures.pairs_per_body = static_cast<double>(pairs) / figures.bodies;
-  return figures;
+  statistics.min_extent = min;
+  statistics.median_extent = quantile(extents, 0.5);
+  statistics.max_extent = max;
+  statistics.pairs_per_body = static_cast<double>(pairs) / statistics.bodies;
+  return statistics;
 }
 
 std::optional<double> RangeStatistics::sizeRatio() const {
@@ -210,7 +210,7 @@ std::optional<SceneDescription> describe(FrameSource& source, int parts,
   std::vector<FrameStatistics> frames;
   std::vector<Aabb> before;
   FilterTally tally(scene.filter);
-  const auto take = [&](const Frame& frame) {
+  const auto describe_frame = [&](const Frame& frame) {
     const std::vector<Pair> pairs = sweptPairs(frame.boxes, scene.filter);
     frames.push_back(frameStatistics(scene, frame, before, pairs.size()));
     if (!scene.filter.wantsAll() && (frame.index > 0 || scene.frames == 0)) {
@@ -218,7 +218,7 @@ std::optional<SceneDescription> describe(FrameSource& source, int parts,
     }
     before.assign(frame.boxes.begin(), frame.boxes.end());
   };
-  if (!recordAll(source, take, progress)) return std::nullopt;
+  if (!recordAll(source, describe_frame, progress)) return std::nullopt;
   const std::span all(frames);
   SceneDescription description{
       .initial = rangeStatistics(all.first(1)), .parts = {}, .overall = {}};

@@ -16,27 +16,27 @@ LayerMatrix LayerMatrix::all() {
 }
 
 LayerMatrix& LayerMatrix::set(std::size_t a, std::size_t b, bool collide) {
-  const auto put = [&](std::size_t row, std::size_t column) {
+  const auto set_bit = [&](std::size_t row, std::size_t column) {
     const std::uint32_t bit = std::uint32_t{1} << column;
     rows_[row] = collide ? rows_[row] | bit : rows_[row] & ~bit;
   };
-  put(a, b);
-  put(b, a);
+  set_bit(a, b);
+  set_bit(b, a);
   return *this;
 }
 
 CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix) {
   const auto data = std::make_shared<Data>();
   data->matrix = matrix;
-  const auto keep = [&](auto BodyGroups::*part, auto usual, auto& all) {
-    const bool any =
-        std::ranges::any_of(bodies, [&](const BodyGroups& body) { return body.*part != usual; });
+  const auto store = [&](auto BodyGroups::*member, auto default_value, auto& all) {
+    const bool any = std::ranges::any_of(
+        bodies, [&](const BodyGroups& body) { return body.*member != default_value; });
     if (!any) return;
-    for (const BodyGroups& body : bodies) all.push_back(body.*part);
+    for (const BodyGroups& body : bodies) all.push_back(body.*member);
   };
-  keep(&BodyGroups::layer, std::uint8_t{0}, data->layers);
-  keep(&BodyGroups::world, 0U, data->worlds);
-  keep(&BodyGroups::tags, BodyGroups::kNoTags, data->tags);
+  store(&BodyGroups::layer, std::uint8_t{0}, data->layers);
+  store(&BodyGroups::world, 0U, data->worlds);
+  store(&BodyGroups::tags, BodyGroups::kNoTags, data->tags);
   for (const std::uint8_t layer : data->layers) {
     if (layer >= LayerMatrix::kLayers) {
       throw std::invalid_argument(
@@ -78,9 +78,9 @@ std::span<const BodyGroups::Tags> CollisionFilter::tags() const {
 
 CollisionFilter CollisionFilter::of(std::span<const std::uint32_t> bodies) const {
   if (data_ == nullptr) return {};
-  std::vector<BodyGroups> some;
-  for (const std::uint32_t body : bodies) some.push_back(groupsOf(body));
-  return {some, data_->matrix};
+  std::vector<BodyGroups> groups;
+  for (const std::uint32_t body : bodies) groups.push_back(groupsOf(body));
+  return {groups, data_->matrix};
 }
 
 bool CollisionFilter::Data::shareTag(const BodyGroups::Tags& a, const BodyGroups::Tags& b) {

@@ -28,19 +28,19 @@ std::vector<int> coresOfList(std::istream& list) {
   return cores;
 }
 
-/// Sort key of a core, worst criterion first: an SMT sibling is used; other work on the core.
-std::tuple<bool, double> disadvantage(int core, const std::vector<int>& taken,
+/// Sort key of a core: first whether an SMT sibling is chosen, then other load on the core.
+std::tuple<bool, double> disadvantage(int core, const std::vector<int>& chosen,
                                       const BusyShares& busy, const CoreSiblings& siblings) {
-  bool is_beside_taken = false;
-  double work = busyShare(busy, core);
-  const auto beside = siblings.find(core);
-  if (beside != siblings.end()) {
-    for (const int sibling : beside->second) {
-      is_beside_taken |= std::ranges::find(taken, sibling) != taken.end();
-      work += busyShare(busy, sibling) / 2;  // a busy sibling shares units, not time
+  bool has_chosen_sibling = false;
+  double load = busyShare(busy, core);
+  const auto own = siblings.find(core);
+  if (own != siblings.end()) {
+    for (const int sibling : own->second) {
+      has_chosen_sibling |= std::ranges::find(chosen, sibling) != chosen.end();
+      load += busyShare(busy, sibling) / 2;  // a busy sibling shares units, not time
     }
   }
-  return {is_beside_taken, work};
+  return {has_chosen_sibling, load};
 }
 
 }  // namespace
@@ -66,14 +66,14 @@ std::map<int, CoreTicks> coreTicks(const SystemFolders& folders) {
   std::ifstream file(folders.proc / "stat");
   for (std::string line; std::getline(file, line) && line.starts_with("cpu");) {
     if (line.starts_with("cpu ")) continue;  // the sum over all cores
-    std::istringstream words(line.substr(3));
+    std::istringstream stream(line.substr(3));
     int core = 0;
-    words >> core;
+    stream >> core;
     // user, nice, system, idle, iowait, irq, softirq, steal; later fields are included in these.
-    std::array<std::uint64_t, 8> kinds{};
-    for (std::uint64_t& kind : kinds) words >> kind;
-    const std::uint64_t idle = kinds[3] + kinds[4];
-    ticks[core] = {std::accumulate(kinds.begin(), kinds.end(), std::uint64_t{0}) - idle, idle};
+    std::array<std::uint64_t, 8> fields{};
+    for (std::uint64_t& field : fields) stream >> field;
+    const std::uint64_t idle = fields[3] + fields[4];
+    ticks[core] = {std::accumulate(fields.begin(), fields.end(), std::uint64_t{0}) - idle, idle};
   }
   return ticks;
 }
@@ -86,16 +86,16 @@ BusyShares busySharesBetween(const std::map<int, CoreTicks>& before,
     if (then == before.end()) continue;
     const auto busy = static_cast<double>(now.busy) - static_cast<double>(then->second.busy);
     const auto idle = static_cast<double>(now.idle) - static_cast<double>(then->second.idle);
-    // Linux may decrease the waiting ticks.
+    // Linux may decrease the iowait ticks.
     if (busy + idle > 0) shares[core] = std::clamp(busy / (busy + idle), 0.0, 1.0);
   }
   return shares;
 }
 
-BusyShares watchCores(std::chrono::milliseconds moment, const SystemFolders& folders) {
+BusyShares measureBusyShares(std::chrono::milliseconds duration, const SystemFolders& folders) {
   const auto before = coreTicks(folders);
   if (before.empty()) return {};
-  std::this_thread::sleep_for(moment);
+  std::this_thread::sleep_for(duration);
   return busySharesBetween(before, coreTicks(folders));
 }
 
@@ -113,16 +113,16 @@ CoreSiblings coreSiblings(const SystemFolders& folders) {
 
 std::vector<int> quietestCores(int count, const std::vector<int>& usable, const BusyShares& busy,
                                const CoreSiblings& siblings) {
-  std::vector<int> taken;
-  if (count > static_cast<int>(usable.size())) return taken;
-  std::vector<int> left = usable;
-  while (static_cast<int>(taken.size()) < count) {
+  std::vector<int> chosen;
+  if (count > static_cast<int>(usable.size())) return chosen;
+  std::vector<int> remaining = usable;
+  while (static_cast<int>(chosen.size()) < count) {
     const auto best = std::ranges::min_element(
-        left, {}, [&](int core) { return disadvantage(core, taken, busy, siblings); });
-    taken.push_back(*best);
-    left.erase(best);
+        remaining, {}, [&](int core) { return disadvantage(core, chosen, busy, siblings); });
+    chosen.push_back(*best);
+    remaining.erase(best);
   }
-  return taken;
+  return chosen;
 }
 
 }  // namespace broadmark

@@ -13,7 +13,7 @@ std::string currentErrorText() {
   } catch (const std::exception& error) {
     return error.what();
   } catch (...) {
-    return "threw something that is no std::exception";
+    return "threw an exception that is not a std::exception";
   }
 }
 

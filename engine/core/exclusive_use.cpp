@@ -11,8 +11,8 @@
 namespace broadmark {
 
 struct NamedLock {
-  std::mutex door;  ///< held by a waiting writer, and briefly by every thread that enters
-  std::shared_mutex room;
+  std::mutex entry;  ///< held by a waiting writer, and briefly by each entering thread
+  std::shared_mutex state;
 };
 
 namespace {
@@ -30,14 +30,14 @@ NamedLock* lockOf(std::string_view name) {
 template <bool exclusive>
 StateUse<exclusive>::StateUse(std::string_view name) : lock_(lockOf(name)) {
   if (lock_ == nullptr) return;
-  const std::lock_guard entering(lock_->door);
-  exclusive ? lock_->room.lock() : lock_->room.lock_shared();
+  const std::lock_guard entering(lock_->entry);
+  exclusive ? lock_->state.lock() : lock_->state.lock_shared();
 }
 
 template <bool exclusive>
 StateUse<exclusive>::~StateUse() {
   if (lock_ == nullptr) return;
-  exclusive ? lock_->room.unlock() : lock_->room.unlock_shared();
+  exclusive ? lock_->state.unlock() : lock_->state.unlock_shared();
 }
 
 template class StateUse<true>;

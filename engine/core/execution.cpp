@@ -17,7 +17,7 @@ namespace {
 /// than a wake-up. Pointless when threads outnumber the cores.
 constexpr int kSpins = 2000;
 
-/// The same after wake(), which announces work.
+/// Spins after wake(), which announces work.
 constexpr int kHotSpinCount = 50'000;
 
 /// Hints to the processor that this thread spins.
@@ -25,7 +25,7 @@ void pauseSpin() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #elif defined(__aarch64__)
-  __asm__ volatile("isb");  // about as long as a pause; "yield" takes no time
+  __asm__ volatile("isb");  // takes about as long as x86's pause; "yield" takes no time
 #endif
 }
 
@@ -41,12 +41,12 @@ T awaitChange(const std::atomic<T>& value, T old, int spins) {
   return value.load(std::memory_order_acquire);
 }
 
-/// Binds a thread to these cores except `but`. Returns whether the system allowed it.
-bool bind(pthread_t thread, std::span<const int> cores, int but = -1) {
+/// Binds a thread to these cores except `excluded`. Returns whether the system allowed the binding.
+bool bind(pthread_t thread, std::span<const int> cores, int excluded = -1) {
   cpu_set_t set;
   CPU_ZERO(&set);
   for (const int core : cores) {
-    if (core != but) CPU_SET(core, &set);
+    if (core != excluded) CPU_SET(core, &set);
   }
   return ::pthread_setaffinity_np(thread, sizeof set, &set) == 0;
 }
@@ -96,7 +96,7 @@ ThreadTeam::ThreadTeam(int size) : spins_(0) {
   threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
   try {
     for (int worker = 1; worker < size; ++worker) {
-      threads_.emplace_back([this, worker] { loop(worker); });
+      threads_.emplace_back([this, worker] { workerLoop(worker); });
     }
   } catch (const std::system_error&) {  // the system grants no more threads
     stop();
@@ -112,7 +112,7 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
     all = bind(threads_[i].native_handle(), cores.subspan(i + 1, 1));
   }
   shared_cores_.clear();
-  callers_core_ = -1;
+  caller_core_ = -1;
   if (all) return true;
   bind(::pthread_self(), usable);
   for (std::thread& thread : threads_) bind(thread.native_handle(), usable);
@@ -121,22 +121,22 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
   return false;
 }
 
-/// In a virtual machine Linux often wakes a thread on the core of the waking thread although
+/// In virtual machines Linux often wakes a thread on the core of the waking thread although
 /// another core is idle: then both share the core for a frame.
 void ThreadTeam::avoidCallerCore() {
   const int core = ::sched_getcpu();
-  if (shared_cores_.empty() || core == callers_core_) return;
-  callers_core_ = core;
+  if (shared_cores_.empty() || core == caller_core_) return;
+  caller_core_ = core;
   for (std::thread& thread : threads_) bind(thread.native_handle(), shared_cores_, core);
 }
 
 void ThreadTeam::stop() {
   stopping_.store(true);
-  tell(generation_ + 1);
+  publish(generation_ + 1);
   for (std::thread& thread : threads_) thread.join();
 }
 
-void ThreadTeam::perform(int worker) {
+void ThreadTeam::runJob(int worker) {
   try {
     job_.call(job_.context, worker);
   } catch (...) {
@@ -144,7 +144,7 @@ void ThreadTeam::perform(int worker) {
   }
 }
 
-void ThreadTeam::tell(unsigned generation) {
+void ThreadTeam::publish(unsigned generation) {
   generation_.store(generation, std::memory_order_release);
   generation_.notify_all();
 }
@@ -152,7 +152,7 @@ void ThreadTeam::tell(unsigned generation) {
 void ThreadTeam::wake() {
   if (threads_.empty() || spins_ == 0) return;
   avoidCallerCore();
-  tell(generation_ | 1U);
+  publish(generation_ | 1U);
 }
 
 void ThreadTeam::start(Job job) {
@@ -160,21 +160,21 @@ void ThreadTeam::start(Job job) {
   busy_.store(size() - 1, std::memory_order_relaxed);
   if (!threads_.empty()) {
     avoidCallerCore();
-    tell((generation_ | 1U) + 1);
+    publish((generation_ | 1U) + 1);
   }
-  perform(0);
+  runJob(0);
   const int spins = spins_ > 0 ? kHotSpinCount : 0;  // the wait is short, a wake-up long
   for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-void ThreadTeam::loop(int worker) {
+void ThreadTeam::workerLoop(int worker) {
   for (unsigned seen = 0;;) {
     const bool is_awake = (seen & 1U) != 0;
     seen = awaitChange(generation_, seen, is_awake ? kHotSpinCount : spins_);
     if (stopping_.load()) return;
     if ((seen & 1U) != 0) continue;
-    perform(worker);
+    runJob(worker);
     if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_one();
   }
 }

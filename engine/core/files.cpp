@@ -35,13 +35,13 @@ auto uninterrupted(Call&& call) {
 }
 
 FileDescriptor opened(const std::filesystem::path& path, int flags) {
-  constexpr mode_t kEveryoneReads = 0666;
+  constexpr mode_t kMode = 0666;
   return FileDescriptor(
-      uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, kEveryoneReads); }));
+      uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, kMode); }));
 }
 
-/// The target of a symbolic link: the target is written, and the link stays.
-std::filesystem::path throughLinks(std::filesystem::path path) {
+/// Returns the target of a symbolic link: the target is written, and the link remains.
+std::filesystem::path resolved(std::filesystem::path path) {
   std::error_code failed;
   if (!std::filesystem::is_symlink(path, failed)) return path;
   auto target = std::filesystem::canonical(path, failed);
@@ -56,7 +56,7 @@ bool hasName(const FileDescriptor& file, const std::filesystem::path& path) {
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
-/// False if another process has the lock. True where the file system supports no locks.
+/// Returns false if another process has the lock, and true if the file system supports no locks.
 bool tryLock(const FileDescriptor& file) {
   return uninterrupted([&] { return ::flock(file.get(), LOCK_EX | LOCK_NB); }) == 0 ||
          errno != EWOULDBLOCK;
@@ -64,8 +64,8 @@ bool tryLock(const FileDescriptor& file) {
 
 /// Opens and locks `path`, the partial file of `named`.
 FileDescriptor openLocked(const std::filesystem::path& path, const std::filesystem::path& named,
-                          std::chrono::milliseconds patience) {
-  const auto end = std::chrono::steady_clock::now() + patience;
+                          std::chrono::milliseconds timeout) {
+  const auto end = std::chrono::steady_clock::now() + timeout;
   while (true) {
     FileDescriptor file = opened(path, O_WRONLY | O_CREAT);
     if (file.get() < 0) throw failure(named, "cannot write");
@@ -78,18 +78,18 @@ FileDescriptor openLocked(const std::filesystem::path& path, const std::filesyst
     } else if (hasName(file, path)) {
       return file;
     }
-    // Between open and lock another writer has renamed or removed the file.
+    // Another writer renamed or removed the file between open and lock.
   }
 }
 
-/// Truncates the file and seeks to its new end. Returns whether that succeeded.
+/// Truncates the file and seeks to its new end. Returns whether both succeeded.
 bool cutFile(const FileDescriptor& file, std::uint64_t size) {
   const auto end = static_cast<off_t>(size);
   return uninterrupted([&] { return ::ftruncate(file.get(), end); }) == 0 &&
          ::lseek(file.get(), end, SEEK_SET) == end;
 }
 
-/// Waits until all data are on the disc.
+/// Waits until all data are on the disk.
 void syncFile(const FileDescriptor& file, const std::filesystem::path& path) {
   if (uninterrupted([&] { return ::fsync(file.get()); }) != 0) throw failure(path, "cannot write");
 }
@@ -103,9 +103,9 @@ void requireRegular(const std::filesystem::path& path) {
   }
 }
 
-// The only folder that this process may write to, if set. Read by background tasks, too.
+// The only folder that this process may write to, if set. Background tasks read it, too.
 std::mutex sandbox_mutex;
-std::optional<std::filesystem::path> sandbox_folder;  ///< guarded by it
+std::optional<std::filesystem::path> sandbox_folder;  ///< guarded by sandbox_mutex
 
 }  // namespace
 
@@ -180,12 +180,12 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
   }
 }
 
-AtomicFile::AtomicFile(std::filesystem::path path, std::chrono::milliseconds patience)
-    : path_(throughLinks(std::move(path))), partial_(path_.string() + ".part") {
+AtomicFile::AtomicFile(std::filesystem::path path, std::chrono::milliseconds timeout)
+    : path_(resolved(std::move(path))), partial_(path_.string() + ".part") {
   requireInSandbox(path_);
   requireRegular(path_);
-  // Reuses what a killed writer left; truncated only now that the lock is held.
-  file_ = openLocked(partial_, path_, patience);
+  // May contain a killed writer's data; truncated only under the lock.
+  file_ = openLocked(partial_, path_, timeout);
   if (!cutFile(file_, 0)) throw failure(path_, "cannot write");
 }
 
@@ -196,12 +196,12 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::write(std::span<const std::byte> bytes) {
   writeAll(file_.get(), bytes, path_);
   written_ += bytes.size();
-  // Starts the disc early, so that commit() does not wait for everything at the end.
-  constexpr std::uint64_t kPortion = 1 << 23;
-  if (written_ - handed_over_ < kPortion) return;
-  ::sync_file_range(file_.get(), static_cast<off64_t>(handed_over_),
-                    static_cast<off64_t>(written_ - handed_over_), SYNC_FILE_RANGE_WRITE);
-  handed_over_ = written_;
+  // Starts writeback early, so that commit() does not wait for all data at the end.
+  constexpr std::uint64_t kChunk = 1 << 23;
+  if (written_ - flushed_ < kChunk) return;
+  ::sync_file_range(file_.get(), static_cast<off64_t>(flushed_),
+                    static_cast<off64_t>(written_ - flushed_), SYNC_FILE_RANGE_WRITE);
+  flushed_ = written_;
 }
 
 void AtomicFile::commit() {
@@ -212,39 +212,39 @@ void AtomicFile::commit() {
   syncName(path_);
 }
 
-FileDescriptor AtomicFile::commitAndKeep() {
+FileDescriptor AtomicFile::commitAndRelease() {
   commit();
   return std::move(file_);
 }
 
 AppendedFile::AppendedFile(std::filesystem::path path)
-    : path_(throughLinks(std::move(path))), made_(!std::filesystem::exists(path_)), stored_(true) {
+    : path_(resolved(std::move(path))), created_(!std::filesystem::exists(path_)), on_disk_(true) {
   requireInSandbox(path_);
   requireRegular(path_);
   file_ = openLocked(path_, path_, {});
 }
 
 AppendedFile::AppendedFile(FileDescriptor file, std::filesystem::path path)
-    : path_(std::move(path)), file_(std::move(file)), begun_(true) {}
+    : path_(std::move(path)), file_(std::move(file)), started_(true) {}
 
 AppendedFile::~AppendedFile() {
-  if (made_ && !begun_) ::unlink(path_.c_str());
+  if (created_ && !started_) ::unlink(path_.c_str());
 }
 
 void AppendedFile::append(std::string_view text) {
-  if (!begun_) {
+  if (!started_) {
     AtomicFile first(path_);
     first.write(text);
-    file_ = first.commitAndKeep();
-    begun_ = true;
+    file_ = first.commitAndRelease();
+    started_ = true;
     size_ = text.size();
     return;
   }
   try {
     writeAll(file_.get(), std::as_bytes(std::span(text)), path_);
-    if (stored_) syncFile(file_, path_);
+    if (on_disk_) syncFile(file_, path_);
   } catch (const InputError&) {
-    if (stored_) cutFile(file_, size_);
+    if (on_disk_) cutFile(file_, size_);
     throw;
   }
   size_ += text.size();
@@ -262,17 +262,17 @@ void syncName(const std::filesystem::path& path) {
 }
 
 void writeTextFile(const std::filesystem::path& path, std::string_view text) {
-  // Longer than another process needs to write a text.
-  constexpr std::chrono::seconds kPatience{5};
-  AtomicFile file(path, kPatience);
+  // Longer than another process takes to write a text.
+  constexpr std::chrono::seconds kTimeout{5};
+  AtomicFile file(path, kTimeout);
   file.write(text);
   file.commit();
 }
 
 void requireBelow(const std::filesystem::path& folder, const std::filesystem::path& path) {
-  const auto place = std::filesystem::weakly_canonical(std::filesystem::absolute(path))
-                         .lexically_relative(std::filesystem::weakly_canonical(folder));
-  const bool below = !place.empty() && std::ranges::none_of(place, [](const auto& part) {
+  const auto relative = std::filesystem::weakly_canonical(std::filesystem::absolute(path))
+                            .lexically_relative(std::filesystem::weakly_canonical(folder));
+  const bool below = !relative.empty() && std::ranges::none_of(relative, [](const auto& part) {
     return part.string().starts_with('.');  // "..": outside; ".": itself; other names: hidden
   });
   if (below) return;

@@ -1,4 +1,4 @@
-// Frames by their number.
+// Frames by index.
 
 #include "broadmark/frame.h"
 

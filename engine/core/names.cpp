@@ -36,7 +36,7 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearestName(std::string_view name, std::span<const std::string> known) {
-  // No valid name is this long: avoids the quadratic comparison.
+  // No valid name is longer: avoids the quadratic comparison.
   if (name.size() > 64) return {};
   std::string nearest;
   std::size_t best = std::max<std::size_t>(2, name.size() / 2) + 1;

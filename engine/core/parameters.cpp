@@ -80,9 +80,9 @@ std::string_view parameterUnit(const Parameter& parameter) {
       {"radians per second", "rad/s"},
   };
   constexpr std::string_view kLeadIn = ", in ";
-  const std::size_t at = parameter.doc.rfind(kLeadIn);
-  if (at == parameter.doc.npos) return "";
-  const std::string_view stated = parameter.doc.substr(at + kLeadIn.size());
+  const std::size_t position = parameter.doc.rfind(kLeadIn);
+  if (position == parameter.doc.npos) return "";
+  const std::string_view stated = parameter.doc.substr(position + kLeadIn.size());
   for (const auto& [unit, short_form] : kUnits) {
     if (stated == unit) return short_form;
   }

@@ -1,5 +1,5 @@
-// The sweep: bodies go into strips along the second-longest axis (a body into every strip it
-// touches); within a strip they are sorted along the longest axis and swept. A pair that shares
+// The sweep: bodies are binned into strips along the second-longest axis (a body into every strip
+// it touches); within a strip they are sorted along the longest axis and swept. A pair that shares
 // several strips is reported only in the strip with the larger of its two lower bounds, so without
 // duplicates or omissions: overlapping bodies share that strip. Each world is swept separately. O(n
 // log n) plus the candidates of the sweeps.
@@ -47,9 +47,9 @@ class Strips {
     }
     // Wide enough that a typical body touches little more than one strip.
     const double mean_edge = edges / static_cast<double>(count);
-    const double wanted =
+    const double desired =
         std::min((high - low_) / std::max(4 * mean_edge, 1e-300), static_cast<double>(count) / 32);
-    count_ = static_cast<std::uint32_t>(std::clamp(wanted, 1.0, 65536.0));
+    count_ = static_cast<std::uint32_t>(std::clamp(desired, 1.0, 65536.0));
     scale_ = high > low_ ? count_ / (high - low_) : 0;
   }
 
@@ -130,7 +130,7 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFi
 }
 
 std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
-                             std::size_t most) {
+                             std::size_t max_pairs) {
   std::vector<Pair> pairs;
   if (std::ranges::all_of(boxes, isEmpty)) return pairs;
   const std::array<int, 3> axes = axesByExtent(boxes);
@@ -153,9 +153,9 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
            ++j) {
         if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s &&
             filter.wanted(*i, *j)) {
-          if (pairs.size() == most) {
+          if (pairs.size() == max_pairs) {
             throw InputError(
-                fmt::format("more than {} pairs overlap: too many to be looked at", most));
+                fmt::format("more than {} pairs overlap: too many to compute", max_pairs));
           }
           pairs.push_back(orderedPair(*i, *j));
         }

@@ -9,11 +9,11 @@
 
 namespace broadmark {
 
-/// Removes chunks of `items`, large ones first, while `still_fails(fewer)`, until no item can be
-/// removed; the last `kept` stay. Returns whether any was removed.
+/// Removes chunks of `items`, large ones first, while still_fails(fewer), until no item can be
+/// removed; never removes the last `kept` items. Returns whether any was removed.
 template <class Item, class Fails>
-bool leaveOut(std::vector<Item> items, std::size_t kept, Fails&& still_fails) {
-  const std::size_t at_first = items.size();
+bool minimize(std::vector<Item> items, std::size_t kept, Fails&& still_fails) {
+  const std::size_t initial_size = items.size();
   std::size_t chunk = std::max<std::size_t>(items.size() / 2, 1);
   while (true) {
     const std::size_t before = items.size();
@@ -28,7 +28,7 @@ bool leaveOut(std::vector<Item> items, std::size_t kept, Fails&& still_fails) {
         begin = end;
       }
     }
-    if (chunk == 1 && items.size() == before) return items.size() < at_first;
+    if (chunk == 1 && items.size() == before) return items.size() < initial_size;
     chunk = std::max<std::size_t>(chunk / 2, 1);
   }
 }

@@ -2,11 +2,11 @@
 // as long as the rest still fails, until nothing can be removed: no single body, no frame, no
 // absence (filled with the body's box before or after), nothing of the collision filter.
 //
-// Plain delta debugging would begin with the whole recording. But most wrong answers have local
-// causes. So the wrong pair is tried first with few neighbours, then with more and more (and with a
-// short history of frames, then a longer one), all in memory. If the pair and k neighbours fail,
-// that takes O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only
-// the whole recording fails, O(n log n) passes on nearly n bodies.
+// Plain delta debugging would start with the whole recording. But most wrong answers have local
+// causes. So the wrong pair is tried first with few neighbours, then with increasingly many (and
+// with a short history of frames, then a longer one), all in memory. If the pair and k neighbours
+// fail, this takes O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if
+// only the whole recording fails, O(n log n) passes on nearly n bodies.
 
 #include "broadmark/fuzz/shrink.h"
 
@@ -27,23 +27,23 @@
 namespace broadmark {
 namespace {
 
-/// The memory of a part.
+/// Memory of a part.
 std::size_t bytesOf(std::size_t bodies, std::size_t frames) {
   return bodies * frames * sizeof(Aabb);
 }
 
 /// Whether `part` is a subset of `whole`; both are ascending.
-bool isWithin(const Part& part, const Part& whole) {
+bool isWithin(const Selection& part, const Selection& whole) {
   return std::ranges::includes(whole.bodies, part.bodies) &&
          std::ranges::includes(whole.frames, part.frames);
 }
 
-/// The index of the first element of `all`, ascending, that is not below `number`.
+/// Index of the first element of `all`, which is ascending, that is not below `number`.
 std::uint32_t positionOf(std::uint32_t number, const std::vector<std::uint32_t>& all) {
   return static_cast<std::uint32_t>(std::ranges::lower_bound(all, number) - all.begin());
 }
 
-/// The index of each of `numbers` in `all`; both are ascending.
+/// Index of each number in `all`; both lists are ascending.
 std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
                                      const std::vector<std::uint32_t>& all) {
   std::vector<std::uint32_t> found;
@@ -52,26 +52,26 @@ std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
 }
 
 /// The part restricted to some of its bodies.
-Part withBodies(const Part& part, std::vector<std::uint32_t> bodies) {
-  Part fewer = part;
-  fewer.filter = part.filter.of(positions(bodies, part.bodies));
-  fewer.bodies = std::move(bodies);
-  std::erase_if(fewer.filled, [&](const Filling& filling) {
-    return !std::ranges::binary_search(fewer.bodies, filling.body);
+Selection withBodies(const Selection& part, std::vector<std::uint32_t> bodies) {
+  Selection remaining = part;
+  remaining.filter = part.filter.of(positions(bodies, part.bodies));
+  remaining.bodies = std::move(bodies);
+  std::erase_if(remaining.filled, [&](const Filling& filling) {
+    return !std::ranges::binary_search(remaining.bodies, filling.body);
   });
-  return fewer;
+  return remaining;
 }
 
 /// The part restricted to some of its frames.
-Part withFrames(const Part& part, std::vector<std::uint32_t> frames) {
-  Part fewer = part;
-  fewer.frames = std::move(frames);
-  return fewer;
+Selection withFrames(const Selection& part, std::vector<std::uint32_t> frames) {
+  Selection remaining = part;
+  remaining.frames = std::move(frames);
+  return remaining;
 }
 
 /// The part with ids relative to another part that contains it.
-Part renumbered(const Part& part, const Part& origin) {
-  Part same = part;
+Selection renumbered(const Selection& part, const Selection& origin) {
+  Selection same = part;
   same.bodies = positions(part.bodies, origin.bodies);
   same.frames = positions(part.frames, origin.frames);
   same.filled.clear();
@@ -119,7 +119,7 @@ class Shrinker {
   Shrinker(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
            const FailingTrial& trial, const ShrinkOptions& options)
       : suspects_(suspects), trial_(trial), options_(options), whole_(source), last_(last) {
-    best_.part = wholePart(source.scene(), last);
+    best_.part = selectAll(source.scene(), last);
   }
 
   ShrunkPart shrink() {
@@ -137,29 +137,31 @@ class Shrinker {
   }
 
  private:
-  /// Loads a part into memory, if it fits. Returns whether it is loaded.
-  bool hold(const Part& part) {
+  /// Loads a part into memory if it fits. Returns whether the part is loaded.
+  bool load(const Selection& part) {
     if (isHeld(part)) return true;
     if (bytesOf(part.bodies.size(), part.frames.size()) > options_.memory_bytes) {
       return false;
     }
     held_.reset();
-    origin_ = partOf(whole_.scene(), part.bodies, part.frames);
+    origin_ = selectionOf(whole_.scene(), part.bodies, part.frames);
     SubRecording frames(whole_, origin_, partName(whole_.scene()));
     held_.emplace(frames);
     return true;
   }
 
-  [[nodiscard]] bool isHeld(const Part& part) const { return held_ && isWithin(part, origin_); }
+  [[nodiscard]] bool isHeld(const Selection& part) const {
+    return held_ && isWithin(part, origin_);
+  }
 
-  SubRecording framesOf(const Part& part) {
+  SubRecording framesOf(const Selection& part) {
     const std::string name = partName(whole_.scene());
     if (!isHeld(part)) return {whole_, part, name};
     return {*held_, renumbered(part, origin_), name};
   }
 
-  /// Tries a part, and makes it the best one if it fails.
-  bool fails(const Part& part) {
+  /// Tries a part, and stores it as the best one if it fails.
+  bool fails(const Selection& part) {
     SubRecording source = framesOf(part);
     const bool failed = trial_(source);
     ++best_.trials;
@@ -177,10 +179,10 @@ class Shrinker {
     if (options_.cancelled && options_.cancelled()) throw Cancelled();
   }
 
-  /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Returns
+  /// Tries the suspects with increasingly many neighbours, as many as fit into memory. Returns
   /// whether any trial failed.
   bool failsAmongNeighbours() {
-    const Part before = best_.part;
+    const Selection before = best_.part;
     const std::vector<std::uint32_t> seeds = suspects_();
     const std::size_t limit = options_.memory_bytes / bytesOf(1, before.frames.size());
     if (seeds.empty() || limit < seeds.size()) return false;
@@ -190,7 +192,7 @@ class Shrinker {
       std::ranges::sort(bodies);
       return withBodies(before, std::move(bodies));
     };
-    hold(first(order.size()));
+    load(first(order.size()));
     for (std::size_t count = seeds.size(); count < order.size(); count *= 2) {
       if (fails(first(count))) return true;
     }
@@ -203,9 +205,9 @@ class Shrinker {
                                  whole_.scene().name, options_.subject, last_));
   }
 
-  /// Tries longer and longer histories before the last frame.
+  /// Tries increasingly long histories before the last frame.
   void shortenHistory() {
-    const Part before = best_.part;
+    const Selection before = best_.part;
     const auto frames = static_cast<std::ptrdiff_t>(before.frames.size());
     for (std::ptrdiff_t history = 2; history < frames; history *= 2) {
       if (fails(withFrames(before, {before.frames.end() - history, before.frames.end()}))) return;
@@ -215,7 +217,7 @@ class Shrinker {
   void shrinkToMinimum() {
     bool smaller = true;
     while (smaller) {
-      hold(best_.part);
+      load(best_.part);
       smaller = removeFrames();
       smaller = removeBodies() || smaller;
       smaller = fillAbsences() || smaller;
@@ -224,50 +226,50 @@ class Shrinker {
   }
 
   bool removeBodies() {
-    return leaveOut(best_.part.bodies, 0, [&](const std::vector<std::uint32_t>& bodies) {
+    return minimize(best_.part.bodies, 0, [&](const std::vector<std::uint32_t>& bodies) {
       return fails(withBodies(best_.part, bodies));
     });
   }
 
-  /// Keeps the last frame, and at least one before it: the initial pose.
+  /// Retains the last frame, and at least one before it: the initial pose.
   bool removeFrames() {
-    return leaveOut(best_.part.frames, 1, [&](const std::vector<std::uint32_t>& frames) {
+    return minimize(best_.part.frames, 1, [&](const std::vector<std::uint32_t>& frames) {
       return frames.size() > 1 && fails(withFrames(best_.part, frames));
     });
   }
 
-  enum class PutWhere { it_was, it_will_be };
+  enum class FillWith { box_before, box_after };
 
   /// Fills each unnecessary absence. Sets all_present once no absence is left.
   bool fillAbsences() {
     if (best_.part.all_present) return false;
-    bool fewer = false;
-    for (const PutWhere where : {PutWhere::it_was, PutWhere::it_will_be}) {
-      const Part before = best_.part;
+    bool removed = false;
+    for (const FillWith where : {FillWith::box_before, FillWith::box_after}) {
+      const Selection before = best_.part;
       std::vector<Filling> all = absences(before, where);
       std::erase_if(all, [](const Filling& absence) { return isEmpty(absence.box); });
-      fewer = leaveOut(all, 0,
-                       [&](const std::vector<Filling>& left) {
-                         Part part = before;
-                         std::ranges::set_difference(all, left, std::back_inserter(part.filled), {},
-                                                     placeOf, placeOf);
-                         return fails(part);
-                       }) ||
-              fewer;
+      removed = minimize(all, 0,
+                         [&](const std::vector<Filling>& left) {
+                           Selection part = before;
+                           std::ranges::set_difference(all, left, std::back_inserter(part.filled),
+                                                       {}, keyOf, keyOf);
+                           return fails(part);
+                         }) ||
+                removed;
     }
-    if (!absences(best_.part, PutWhere::it_was).empty()) return fewer;
-    Part steady = best_.part;
-    steady.all_present = true;
-    return fails(steady) || fewer;
+    if (!absences(best_.part, FillWith::box_before).empty()) return removed;
+    Selection always_present = best_.part;
+    always_present.all_present = true;
+    return fails(always_present) || removed;
   }
 
-  static std::pair<std::uint32_t, std::uint32_t> placeOf(const Filling& filling) {
+  static std::pair<std::uint32_t, std::uint32_t> keyOf(const Filling& filling) {
     return {filling.body, filling.first};
   }
 
-  /// Each absence of a body in a part, with its box just before or after: the other box if that is
-  /// missing, empty if the body is absent throughout. By body and frame.
-  std::vector<Filling> absences(const Part& part, PutWhere where) {
+  /// Each absence of a body in a part, with the box just before or after it: the other box if that
+  /// is missing, empty if the body is absent throughout. By body and frame.
+  std::vector<Filling> absences(const Selection& part, FillWith where) {
     struct Body {
       Aabb before = kEmptyBox;
       std::optional<Filling> absence;
@@ -276,8 +278,8 @@ class Shrinker {
     std::vector<Filling> found;
     const auto end_absence = [&](Body& body, const Aabb& after) {
       if (!body.absence) return;
-      const bool is_ahead = where == PutWhere::it_will_be && !isEmpty(after);
-      body.absence->box = is_ahead || isEmpty(body.before) ? after : body.before;
+      const bool use_after = where == FillWith::box_after && !isEmpty(after);
+      body.absence->box = use_after || isEmpty(body.before) ? after : body.before;
       found.push_back(*body.absence);
       body.absence.reset();
     };
@@ -298,14 +300,14 @@ class Shrinker {
       }
     }
     for (Body& body : bodies) end_absence(body, kEmptyBox);
-    std::ranges::sort(found, {}, placeOf);
+    std::ranges::sort(found, {}, keyOf);
     return found;
   }
 
   bool simplifyFilterOfBest() {
     return simplifyFilter(best_.part.filter, best_.part.bodies.size(),
                           [&](const CollisionFilter& filter) {
-                            Part part = best_.part;
+                            Selection part = best_.part;
                             part.filter = filter;
                             return fails(part);
                           });
@@ -317,11 +319,11 @@ class Shrinker {
   IndexedFrames& whole_;
   std::uint32_t last_;  ///< frame
   ShrunkPart best_;
-  Part origin_;                    ///< in the recording's ids
+  Selection origin_;               ///< in the recording's ids
   std::optional<FrameList> held_;  ///< origin_ in memory
 };
 
-/// The difference of a case's answer for the last frame from the right one; nothing if the pass
+/// The difference of a case's answer for the last frame from the correct one; nullopt if the pass
 /// ends early.
 std::optional<FrameDifference> lastDifference(CaseRun& case_run, IndexedFrames& source,
                                               const CancelQuery& cancelled) {
@@ -367,7 +369,7 @@ ShrunkCase shrinkCase(const Case& test_case, IndexedFrames& source, const FrameD
     throw InputError(
         fmt::format("{} finds no pairs: there is nothing to shrink", test_case.algorithm.id));
   }
-  CaseRun trial(test_case, RunPolicy::unlimited(CheckMode::full), options.make_host,
+  CaseRun trial(test_case, RunPolicy::unlimited(CheckMode::full), options.make_executor,
                 options.cancelled);
   FrameDifference last = known;
   const auto fails = [&](IndexedFrames& part) {

@@ -1,5 +1,5 @@
-// Simplifies the groups of each body, and the matrix. Layers are few, so each is tried to be merged
-// with each other one: O(layers²) trials. The rest is delta debugging.
+// Simplifies the groups of each body, and the matrix. Layers are few: tries to merge each layer
+// with each other layer, in O(layers²) trials. The rest is delta debugging.
 
 #include "simpler_filter.h"
 
@@ -14,14 +14,14 @@ namespace broadmark {
 namespace {
 
 /// A filter in modifiable form.
-struct OpenFilter {
+struct MutableFilter {
   std::vector<BodyGroups> bodies;
   LayerMatrix matrix;
 
-  [[nodiscard]] CollisionFilter closed() const { return {bodies, matrix}; }
+  [[nodiscard]] CollisionFilter build() const { return {bodies, matrix}; }
 };
 
-using Layers = std::pair<std::size_t, std::size_t>;
+using LayerPair = std::pair<std::size_t, std::size_t>;
 
 class FilterShrinker {
  public:
@@ -34,18 +34,18 @@ class FilterShrinker {
   }
 
   bool shrink() {
-    OpenFilter none{std::vector<BodyGroups>(best_.bodies.size()), LayerMatrix().set(0, 0)};
+    MutableFilter none{std::vector<BodyGroups>(best_.bodies.size()), LayerMatrix().set(0, 0)};
     if (fails(none)) return true;
-    bool simpler = leaveOutAllLayers() || leaveOutLayers();
-    simpler = letLayersCollide() || simpler;
-    simpler = forgetUnusedLayers() || simpler;
-    simpler = leaveOutWorlds() || simpler;
-    return leaveOutTags() || simpler;
+    bool simpler = removeAllLayers() || mergeLayers();
+    simpler = removeExceptions() || simpler;
+    simpler = clearUnusedLayers() || simpler;
+    simpler = removeWorlds() || simpler;
+    return removeTags() || simpler;
   }
 
  private:
-  bool fails(const OpenFilter& filter) {
-    if (!still_fails_(filter.closed())) return false;
+  bool fails(const MutableFilter& filter) {
+    if (!still_fails_(filter.build())) return false;
     best_ = filter;
     return true;
   }
@@ -56,20 +56,20 @@ class FilterShrinker {
     return {used.begin(), used.end()};
   }
 
-  bool leaveOutAllLayers() {
-    OpenFilter simpler = best_;
+  bool removeAllLayers() {
+    MutableFilter simpler = best_;
     for (BodyGroups& body : simpler.bodies) body.layer = 0;
     simpler.matrix = LayerMatrix().set(0, 0);
     const bool had_any = simpler.bodies != best_.bodies || !best_.matrix.collide(0, 0);
     return had_any && fails(simpler);
   }
 
-  bool leaveOutLayers() {
+  bool mergeLayers() {
     bool any = false;
     for (const std::size_t layer : layers()) {
       for (const std::size_t other : layers()) {
         if (other == layer) continue;
-        OpenFilter simpler = best_;
+        MutableFilter simpler = best_;
         for (BodyGroups& body : simpler.bodies) {
           if (body.layer == layer) body.layer = static_cast<std::uint8_t>(other);
         }
@@ -81,25 +81,25 @@ class FilterShrinker {
     return any;
   }
 
-  bool letLayersCollide() {
-    std::vector<Layers> apart;
+  bool removeExceptions() {
+    std::vector<LayerPair> exceptions;
     const std::vector<std::size_t> used = layers();
     for (const std::size_t a : used) {
       for (const std::size_t b : used) {
-        if (a <= b && !best_.matrix.collide(a, b)) apart.emplace_back(a, b);
+        if (a <= b && !best_.matrix.collide(a, b)) exceptions.emplace_back(a, b);
       }
     }
-    const OpenFilter before = best_;
-    return leaveOut(apart, 0, [&](const std::vector<Layers>& fewer) {
-      OpenFilter simpler = before;
-      for (const auto& [a, b] : apart) simpler.matrix.set(a, b);
+    const MutableFilter before = best_;
+    return minimize(exceptions, 0, [&](const std::vector<LayerPair>& fewer) {
+      MutableFilter simpler = before;
+      for (const auto& [a, b] : exceptions) simpler.matrix.set(a, b);
       for (const auto& [a, b] : fewer) simpler.matrix.set(a, b, false);
       return fails(simpler);
     });
   }
 
-  bool forgetUnusedLayers() {
-    OpenFilter simpler{best_.bodies, LayerMatrix()};
+  bool clearUnusedLayers() {
+    MutableFilter simpler{best_.bodies, LayerMatrix()};
     const std::vector<std::size_t> used = layers();
     for (const std::size_t a : used) {
       for (const std::size_t b : used) simpler.matrix.set(a, b, best_.matrix.collide(a, b));
@@ -107,14 +107,14 @@ class FilterShrinker {
     return simpler.matrix != best_.matrix && fails(simpler);
   }
 
-  bool leaveOutWorlds() {
+  bool removeWorlds() {
     std::set<std::uint32_t> used;
     for (const BodyGroups& body : best_.bodies) used.insert(body.world);
     if (used == std::set<std::uint32_t>{0}) return false;
-    const OpenFilter before = best_;
-    return leaveOut(std::vector(used.begin(), used.end()), 0,
+    const MutableFilter before = best_;
+    return minimize(std::vector(used.begin(), used.end()), 0,
                     [&](const std::vector<std::uint32_t>& fewer) {
-                      OpenFilter simpler = before;
+                      MutableFilter simpler = before;
                       for (BodyGroups& body : simpler.bodies) {
                         if (std::ranges::binary_search(fewer, body.world)) continue;
                         body.world = fewer.empty() ? 0 : fewer.front();
@@ -123,14 +123,14 @@ class FilterShrinker {
                     });
   }
 
-  bool leaveOutTags() {
+  bool removeTags() {
     std::set<std::uint32_t> used;
     for (const BodyGroups& body : best_.bodies) used.insert(body.tags.begin(), body.tags.end());
     used.erase(BodyGroups::kNoTag);
-    const OpenFilter before = best_;
-    return leaveOut(std::vector(used.begin(), used.end()), 0,
+    const MutableFilter before = best_;
+    return minimize(std::vector(used.begin(), used.end()), 0,
                     [&](const std::vector<std::uint32_t>& fewer) {
-                      OpenFilter simpler = before;
+                      MutableFilter simpler = before;
                       for (BodyGroups& body : simpler.bodies) {
                         for (std::uint32_t& tag : body.tags) {
                           if (!std::ranges::binary_search(fewer, tag)) tag = BodyGroups::kNoTag;
@@ -141,7 +141,7 @@ class FilterShrinker {
   }
 
   const std::function<bool(const CollisionFilter&)>& still_fails_;
-  OpenFilter best_;  ///< the simplest failing filter
+  MutableFilter best_;  ///< the simplest failing filter
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Timed calls into an algorithm.
+// Timed calls of an algorithm.
 
 #include "broadmark/harness/case_executor.h"
 
@@ -19,7 +19,7 @@ std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-/// Runs the four phases and times them. Nothing else happens inside the clock.
+/// Runs and times the four phases. Nothing else is timed.
 FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
   FrameTimes times;
   const auto start = Clock::now();
@@ -65,7 +65,7 @@ bool isCompacted(const Case& test_case, const SceneInfo& scene) {
 }
 
 /// Whether each of several worlds gets its own instance.
-bool isApart(const Case& test_case, const SceneInfo& scene) {
+bool hasInstancePerWorld(const Case& test_case, const SceneInfo& scene) {
   const AlgorithmTraits& traits = test_case.algorithm.traits;
   const std::size_t worlds = worldCount(scene);
   if (worlds < 2) return false;
@@ -74,20 +74,20 @@ bool isApart(const Case& test_case, const SceneInfo& scene) {
          scene.objects / worlds >= traits.side_by_side_below;
 }
 
-std::unique_ptr<BroadPhase> makeForOneWorld(const Case& test_case, const SceneInfo& scene) {
+std::unique_ptr<BroadPhase> makeWorldInstance(const Case& test_case, const SceneInfo& scene) {
   std::unique_ptr<BroadPhase> instance = makeInstance(test_case);
   if (!isCompacted(test_case, scene)) return instance;
   return compacted(std::move(instance));
 }
 
-CounterVisitor into(Counts& counts) {
+CounterVisitor recorderOf(Counts& counts) {
   return [&counts](std::string_view name, std::uint64_t count) { counts.emplace(name, count); };
 }
 
 }  // namespace
 
 InProcessExecutor::~InProcessExecutor() {
-  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  const ExclusiveUse exclusive(case_.algorithm.traits.exclusive);
   instance_.reset();
   execution_.reset();
 }
@@ -95,7 +95,7 @@ InProcessExecutor::~InProcessExecutor() {
 std::int64_t InProcessExecutor::start(const SceneInfo& scene, const Frame& first) {
   stop();
   requireRunnable(case_, scene);
-  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  const ExclusiveUse exclusive(case_.algorithm.traits.exclusive);
   report_.processor = {};
   if (!processor_) processor_.emplace();
   processor_->restart();
@@ -107,15 +107,16 @@ std::int64_t InProcessExecutor::start(const SceneInfo& scene, const Frame& first
   const auto start = Clock::now();
   instance_->initialize(scene, first, *execution_);
   const auto end = Clock::now();
-  if (case_.answer == AnswerKind::events) takeAnswer();
+  if (case_.answer == AnswerKind::events) storeAnswer();
   return nanoseconds(end - start);
 }
 
 std::unique_ptr<BroadPhase> InProcessExecutor::makeInstanceFor(const SceneInfo& scene) const {
   const AlgorithmTraits& traits = case_.algorithm.traits;
-  const auto make = [this](const SceneInfo& world) { return makeForOneWorld(case_, world); };
-  std::unique_ptr<BroadPhase> instance =
-      isApart(case_, scene) ? perWorld(scene, make, traits.exclusive.empty()) : make(scene);
+  const auto make = [this](const SceneInfo& world) { return makeWorldInstance(case_, world); };
+  std::unique_ptr<BroadPhase> instance = hasInstancePerWorld(case_, scene)
+                                             ? perWorld(scene, make, traits.exclusive.empty())
+                                             : make(scene);
   if (case_.answer == AnswerKind::pairs) return instance;
   if (!traits.events || isCompacted(case_, scene)) {
     return withEvents(std::move(instance));
@@ -124,8 +125,8 @@ std::unique_ptr<BroadPhase> InProcessExecutor::makeInstanceFor(const SceneInfo& 
   return instance;
 }
 
-/// Called once a frame, so that all later queries see the same answer. Returns its size.
-std::uint64_t InProcessExecutor::takeAnswer() {
+/// Called once per frame, so that all later queries return the same answer. Returns its size.
+std::uint64_t InProcessExecutor::storeAnswer() {
   if (case_.answer == AnswerKind::events) {
     events_ = instance_->events();
     return eventCount(events_);
@@ -137,11 +138,11 @@ std::uint64_t InProcessExecutor::takeAnswer() {
 void InProcessExecutor::pinThreads() {
   // Threads started by the library would inherit the affinity to one core.
   if (case_.algorithm.traits.on_device) return;
-  constexpr std::chrono::milliseconds kMoment{60};
-  const bool is_choice = execution_->threads() < static_cast<int>(usable_cores_.size());
+  constexpr std::chrono::milliseconds kSampleTime{60};
+  const bool has_choice = execution_->threads() < static_cast<int>(usable_cores_.size());
   const std::vector<int> cores =
       quietestCores(execution_->threads(), usable_cores_,
-                    is_choice ? watchCores(kMoment) : BusyShares(), coreSiblings());
+                    has_choice ? measureBusyShares(kSampleTime) : BusyShares(), coreSiblings());
   report_.pinned = execution_->team().pin(cores, usable_cores_);
 }
 
@@ -151,9 +152,9 @@ FrameTimes InProcessExecutor::runCounted(const Frame& frame) {
 }
 
 StepResult InProcessExecutor::step(const Frame& frame) {
-  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  const ExclusiveUse exclusive(case_.algorithm.traits.exclusive);
   StepResult result{.times = runCounted(frame)};
-  result.pairs = takeAnswer();
+  result.pairs = storeAnswer();
   return result;
 }
 
@@ -162,19 +163,19 @@ void InProcessExecutor::stop() {
   events_ = {};
   if (instance_ == nullptr) return;
   report_.processor = processor_->counts();
-  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  const ExclusiveUse exclusive(case_.algorithm.traits.exclusive);
   instance_.reset();
 }
 
 Counts InProcessExecutor::counters() {
   Counts counts;
-  instance_->visitCounters(into(counts));
+  instance_->visitCounters(recorderOf(counts));
   return counts;
 }
 
 Counts InProcessExecutor::setup() {
   Counts counts;
-  instance_->visitSetup(into(counts));
+  instance_->visitSetup(recorderOf(counts));
   return counts;
 }
 
@@ -185,11 +186,12 @@ RecordedDrawing InProcessExecutor::structure() {
 }
 
 std::string InProcessExecutor::validate() {
-  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  const ExclusiveUse exclusive(case_.algorithm.traits.exclusive);
   return instance_->validate();
 }
 
-std::unique_ptr<CaseExecutor> makeLocalHost(const Case& test_case, CancelQuery /*cancelled*/) {
+std::unique_ptr<CaseExecutor> makeInProcessExecutor(const Case& test_case,
+                                                    CancelQuery /*cancelled*/) {
   return std::make_unique<InProcessExecutor>(test_case);
 }
 

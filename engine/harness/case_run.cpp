@@ -18,21 +18,21 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-CaseRun::CaseRun(Case test_case, RunPolicy policy, const ExecutorFactory& make_host,
+CaseRun::CaseRun(Case test_case, RunPolicy policy, const ExecutorFactory& make_executor,
                  CancelQuery cancelled)
     : case_(std::move(test_case)),
       policy_(policy),
       margin_(makeInstance(case_)->margin()),
-      host_(make_host(case_, std::move(cancelled))) {}
+      executor_(make_executor(case_, std::move(cancelled))) {}
 
 void CaseRun::fail(Status status, std::string reason) {
   if (status_ == Status::ok) {
     status_ = status;
     reason_ = std::move(reason);
-  } else if (status != Status::mismatch && !ended_early_) {
-    reason_ += fmt::format("; then {}", reason);  // a mismatch does not explain why a pass ended
+  } else if (status != Status::mismatch && !failed_) {
+    reason_ += fmt::format("; then {}", reason);  // a mismatch does not explain the end of a pass
   }
-  ended_early_ |= status != Status::mismatch;
+  failed_ |= status != Status::mismatch;
 }
 
 std::string CaseRun::atFrame(std::string_view what) const {
@@ -68,11 +68,11 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   frames_ = 0;
   total_ns_ = 0;
   initialize_ns_ = 0;
-  has_instance_ = true;  // so that stop() is called even if start fails halfway
-  followed_.clear();
+  has_instance_ = true;  // stop() must be called even if start() fails halfway
+  accumulated_.clear();
   const bool started = attempt([&] {
-    initialize_ns_ = host_->start(scene, changed_bodies_.complete(first));
-    followEvents(first);
+    initialize_ns_ = executor_->start(scene, change_detector_.complete(first));
+    accumulateEvents(first);
   });
   if (!started) return false;
   if (seconds(initialize_ns_) <= policy_.initialize_limit_seconds) return true;
@@ -84,11 +84,11 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
 
 bool CaseRun::step(const Frame& frame) {
   frame_ = frame.index;
-  const Frame complete = changed_bodies_.complete(frame);
+  const Frame complete = change_detector_.complete(frame);
   changed_count_ = complete.changed->size();
   const bool stepped = attempt([&] {
-    last_ = host_->step(complete);
-    followEvents(frame);
+    last_ = executor_->step(complete);
+    accumulateEvents(frame);
   });
   if (!stepped) return false;
   ++frames_;
@@ -101,25 +101,26 @@ bool CaseRun::step(const Frame& frame) {
   return false;
 }
 
-void CaseRun::followEvents(const Frame& frame) {
-  if (answersEvents() && checks()) followed_.apply(host_->events(), frame.boxes.size());
+void CaseRun::accumulateEvents(const Frame& frame) {
+  if (answersEvents() && checks()) accumulated_.apply(executor_->events(), frame.boxes.size());
 }
 
 std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle) {
   if (!checks()) return std::nullopt;
-  if (policy_.check == CheckMode::hash && margin_ == 0 && followed_.impossible().empty()) {
+  if (policy_.check == CheckMode::hash && margin_ == 0 && accumulated_.impossible().empty()) {
     PairDigest found;
-    if (!attempt([&] { found = answersEvents() ? digest(followed_.pairs()) : host_->digest(); }))
+    if (!attempt(
+            [&] { found = answersEvents() ? digest(accumulated_.pairs()) : executor_->digest(); }))
       return std::nullopt;
     if (found == oracle.pairDigest(frame.boxes, filter_))
       return FrameDifference{.frame = frame.index};
   }
-  PairRuns given;
-  if (!attempt([&] { given = answersEvents() ? followed_.pairs() : host_->answer(); }))
+  PairRuns answer;
+  if (!attempt([&] { answer = answersEvents() ? accumulated_.pairs() : executor_->answer(); }))
     return std::nullopt;
   FrameDifference difference =
-      findDifference(given, oracle.pairs(frame.boxes, filter_), frame, margin_, filter_);
-  difference.addInvalid(followed_.impossible());
+      findDifference(answer, oracle.pairs(frame.boxes, filter_), frame, margin_, filter_);
+  difference.addInvalid(accumulated_.impossible());
   if (difference.isMismatch()) {
     fail(Status::mismatch, atFrame(mismatchText(difference)));
   }
@@ -129,22 +130,22 @@ std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle
 void CaseRun::stop() {
   ended_ = false;
   if (!std::exchange(has_instance_, false)) return;
-  attempt([&] { host_->stop(); });
+  attempt([&] { executor_->stop(); });
 }
 
 template <class Answer>
-Answer CaseRun::ask(Answer (CaseExecutor::*question)()) {
+Answer CaseRun::query(Answer (CaseExecutor::*method)()) {
   Answer answer;
-  attempt([&] { answer = (host_.get()->*question)(); });
+  attempt([&] { answer = (executor_.get()->*method)(); });
   return answer;
 }
 
 PairRuns CaseRun::answer() {
-  return answersEvents() ? followed_.pairs() : ask(&CaseExecutor::answer);
+  return answersEvents() ? accumulated_.pairs() : query(&CaseExecutor::answer);
 }
-Counts CaseRun::counters() { return ask(&CaseExecutor::counters); }
-Counts CaseRun::setup() { return ask(&CaseExecutor::setup); }
-RecordedDrawing CaseRun::structure() { return ask(&CaseExecutor::structure); }
-std::string CaseRun::validate() { return ask(&CaseExecutor::validate); }
+Counts CaseRun::counters() { return query(&CaseExecutor::counters); }
+Counts CaseRun::setup() { return query(&CaseExecutor::setup); }
+RecordedDrawing CaseRun::structure() { return query(&CaseExecutor::structure); }
+std::string CaseRun::validate() { return query(&CaseExecutor::validate); }
 
 }  // namespace broadmark

@@ -31,11 +31,11 @@ void EventAccumulator::apply(const PairEvents& events, std::size_t bodies) {
     const auto [pair, ends] = *first;
     const auto next = std::find_if(
         first, events_.end(), [&, here = pair](const auto& event) { return event.first != here; });
-    const bool is_pair = pair.a < pair.b && pair.b < bodies;
-    const bool is_due = ends == std::ranges::binary_search(pairs_, pair);
-    if (!is_pair || !is_due || next - first > 1) impossible_.push_back(pair);
-    const bool is_change = is_due && std::prev(next)->second == ends;
-    if (is_pair && is_change) (ends ? ended_ : began_).push_back(pair);
+    const bool is_valid = pair.a < pair.b && pair.b < bodies;
+    const bool is_possible = ends == std::ranges::binary_search(pairs_, pair);
+    if (!is_valid || !is_possible || next - first > 1) impossible_.push_back(pair);
+    const bool is_change = is_possible && std::prev(next)->second == ends;
+    if (is_valid && is_change) (ends ? ended_ : began_).push_back(pair);
     first = next;
   }
   next_.clear();

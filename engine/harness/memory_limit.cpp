@@ -1,5 +1,5 @@
-// RLIMIT_DATA limits private writable memory. Unlike RLIMIT_AS it excludes what a graphics driver
-// or a library merely maps.
+// RLIMIT_DATA limits private writable memory. Unlike RLIMIT_AS it excludes memory that a graphics
+// driver or a library merely maps.
 
 #include "broadmark/harness/memory_limit.h"
 
@@ -21,12 +21,12 @@ std::optional<std::uint64_t> statusBytes(const char* key) {
   return std::nullopt;
 }
 
-void limitMemory(std::uint64_t bytes, bool for_good) {
+void limitMemory(std::uint64_t bytes, bool permanent) {
   if (bytes == 0 || statusBytes("VmData").value_or(0) > bytes) return;
   rlimit limit{};
   if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
-  limit.rlim_cur = std::min<rlim_t>(bytes, for_good ? limit.rlim_max : limit.rlim_cur);
-  if (for_good) limit.rlim_max = limit.rlim_cur;
+  limit.rlim_cur = std::min<rlim_t>(bytes, permanent ? limit.rlim_max : limit.rlim_cur);
+  if (permanent) limit.rlim_max = limit.rlim_cur;
   ::setrlimit(RLIMIT_DATA, &limit);
 }
 

@@ -16,7 +16,7 @@ using Texts = std::vector<std::string>;
 /// Load of a core below this is ignored. A single tick in a short moment is insignificant.
 constexpr double kIgnoredLoad = 0.25;
 
-/// The first value in a file; nothing if there is none.
+/// The first value in a file; nullopt if there is none.
 std::optional<int> numberIn(const std::filesystem::path& path) {
   std::ifstream file(path);
   int number = 0;
@@ -41,11 +41,11 @@ void warnOfLoad(Texts& warnings, const MachineState& machine) {
 
 /// A busy core slows its SMT sibling, even if the case does not run on it.
 void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
-  if (std::cmp_greater_equal(threads, machine.usable_cores.size())) return;  // it needs all of them
+  if (std::cmp_greater_equal(threads, machine.usable_cores.size())) return;  // all cores are used
   for (const int core : machine.usable_cores) {
-    const auto beside = machine.siblings.find(core);
-    if (beside == machine.siblings.end()) continue;
-    for (const int sibling : beside->second) {
+    const auto own = machine.siblings.find(core);
+    if (own == machine.siblings.end()) continue;
+    for (const int sibling : own->second) {
       if (busyShare(machine.busy, sibling) < kIgnoredLoad) continue;
       warnings.push_back(
           fmt::format("core {} (SMT sibling of core {}) is busy; timings on core {} will be slower",
@@ -57,7 +57,7 @@ void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
 void warnOfFrequency(Texts& warnings, const Environment& environment, const MachineState& machine) {
   if (!environment.governor.empty() && environment.governor != "performance") {
     warnings.push_back(fmt::format(
-        "the frequency governor is '{}': with 'performance' the cores keep their frequency",
+        "the frequency governor is '{}': with 'performance' the cores run at a constant frequency",
         environment.governor));
   }
   if (machine.turbo) {
@@ -84,9 +84,9 @@ void warnOfBuilds(Texts& warnings, const Environment& environment, const Algorit
 
 }  // namespace
 
-MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders& folders) {
+MachineState sampleMachine(std::chrono::milliseconds duration, const SystemFolders& folders) {
   return {.usable_cores = usableCores(),
-          .busy = watchCores(moment, folders),
+          .busy = measureBusyShares(duration, folders),
           .siblings = coreSiblings(folders),
           .turbo = hasTurbo(folders)};
 }

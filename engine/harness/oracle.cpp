@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t kBruteForceLimit = 300;
 
 /// Counts every difference and lists the first of each kind.
-void note(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
+void recordPair(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
   ++count;
-  if (listed.size() < FrameDifference::kListed) listed.push_back(pair);
+  if (listed.size() < FrameDifference::kMaxListed) listed.push_back(pair);
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter&
                              bool with_pairs) {
   // Each answer holds its filter, so no other filter can get the same address.
   const std::pair key(hashOf(std::as_bytes(boxes)), filter.address());
-  const auto known = answers_.find(key);
-  if (known != answers_.end() && (known->second.pairs || !with_pairs)) return known->second;
+  const auto cached = answers_.find(key);
+  if (cached != answers_.end() && (cached->second.pairs || !with_pairs)) return cached->second;
   scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter)
                                               : sweptPairs(boxes, filter, max_pairs_);
   Answer& answer = answers_.try_emplace(key, Answer{.filter = filter}).first->second;
@@ -51,7 +51,7 @@ PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter
 }
 
 void FrameDifference::addInvalid(PairRun pairs) {
-  for (const Pair pair : pairs) note(invalid_count, invalid_pairs, pair);
+  for (const Pair pair : pairs) recordPair(invalid_count, invalid_pairs, pair);
 }
 
 std::string mismatchText(const FrameDifference& difference) {
@@ -59,45 +59,45 @@ std::string mismatchText(const FrameDifference& difference) {
                      difference.false_count, difference.invalid_count);
 }
 
-FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
+FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, const Frame& frame,
                                float margin, const CollisionFilter& filter) {
   FrameDifference difference{.frame = frame.index};
-  std::vector<Pair> given;
-  given.reserve(pairCount(answer));
+  std::vector<Pair> reported;
+  reported.reserve(pairCount(answer));
   for (const PairRun chunk : answer) {
     for (const Pair pair : chunk) {
       if (pair.a < pair.b && pair.b < frame.boxes.size()) {
-        given.push_back(pair);
+        reported.push_back(pair);
       } else {
-        note(difference.invalid_count, difference.invalid_pairs, pair);
+        recordPair(difference.invalid_count, difference.invalid_pairs, pair);
       }
     }
   }
-  std::ranges::sort(given);
+  std::ranges::sort(reported);
 
-  auto expected = right.begin();
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const Pair pair = given[i];
-    if (i > 0 && pair == given[i - 1]) {
-      note(difference.invalid_count, difference.invalid_pairs, pair);
+  auto expected = correct.begin();
+  for (std::size_t i = 0; i < reported.size(); ++i) {
+    const Pair pair = reported[i];
+    if (i > 0 && pair == reported[i - 1]) {
+      recordPair(difference.invalid_count, difference.invalid_pairs, pair);
       continue;
     }
-    for (; expected != right.end() && *expected < pair; ++expected) {
-      note(difference.missed_count, difference.missed_pairs, *expected);
+    for (; expected != correct.end() && *expected < pair; ++expected) {
+      recordPair(difference.missed_count, difference.missed_pairs, *expected);
     }
-    if (expected != right.end() && *expected == pair) {
+    if (expected != correct.end() && *expected == pair) {
       ++expected;
       continue;
     }
     if (filter.wanted(pair.a, pair.b) &&
         overlaps(enlarged(frame.boxes[pair.a], margin), enlarged(frame.boxes[pair.b], margin))) {
-      note(difference.allowed_extra_count, difference.allowed_extra_pairs, pair);
+      recordPair(difference.allowed_extra_count, difference.allowed_extra_pairs, pair);
     } else {
-      note(difference.false_count, difference.false_pairs, pair);
+      recordPair(difference.false_count, difference.false_pairs, pair);
     }
   }
-  for (; expected != right.end(); ++expected) {
-    note(difference.missed_count, difference.missed_pairs, *expected);
+  for (; expected != correct.end(); ++expected) {
+    recordPair(difference.missed_count, difference.missed_pairs, *expected);
   }
   return difference;
 }

@@ -1,5 +1,5 @@
-// Linux performance events, one descriptor each. Not one group: a group counts only while the
-// processor has slots for all of it, and reading it does not include the threads.
+// Linux performance events, each with a descriptor. They form no group: a group counts only while
+// the processor has slots for all its events, and its counts do not include child threads.
 
 #include "broadmark/harness/processor_counters.h"
 
@@ -24,19 +24,19 @@ constexpr ProcessorCounters::Events kHardware = {{
 }  // namespace
 
 FileDescriptor ProcessorCounters::open(const Event& event) {
-  perf_event_attr wanted{};
-  wanted.size = sizeof wanted;
-  wanted.type = event.type;
-  wanted.config = event.config;
-  wanted.disabled = 1;
-  wanted.inherit = 1;
-  wanted.exclude_kernel = 1;  // unprivileged users may count user space only, if anything
-  wanted.exclude_hv = 1;
-  wanted.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
+  perf_event_attr attributes{};
+  attributes.size = sizeof attributes;
+  attributes.type = event.type;
+  attributes.config = event.config;
+  attributes.disabled = 1;
+  attributes.inherit = 1;
+  attributes.exclude_kernel = 1;  // unprivileged users may count user space only, if anything
+  attributes.exclude_hv = 1;
+  attributes.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
   constexpr int kThisThread = 0;
   constexpr int kAnyCore = -1;
   constexpr int kNoGroup = -1;
-  return FileDescriptor(static_cast<int>(::syscall(SYS_perf_event_open, &wanted, kThisThread,
+  return FileDescriptor(static_cast<int>(::syscall(SYS_perf_event_open, &attributes, kThisThread,
                                                    kAnyCore, kNoGroup, PERF_FLAG_FD_CLOEXEC)));
 }
 
@@ -54,17 +54,17 @@ std::optional<ProcessorCounters::Reading> ProcessorCounters::read(const Counter&
   return reading;
 }
 
-void ProcessorCounters::tellAll(unsigned long request) const {
+void ProcessorCounters::controlAll(unsigned long request) const {
   for (const Counter& counter : counters_) {
     if (counter.file.get() >= 0) ::ioctl(counter.file.get(), request, 0);
   }
 }
 
 ProcessorCounters::Counting::Counting(const ProcessorCounters& counters) : counters_(counters) {
-  counters_.tellAll(PERF_EVENT_IOC_ENABLE);
+  counters_.controlAll(PERF_EVENT_IOC_ENABLE);
 }
 
-ProcessorCounters::Counting::~Counting() { counters_.tellAll(PERF_EVENT_IOC_DISABLE); }
+ProcessorCounters::Counting::~Counting() { counters_.controlAll(PERF_EVENT_IOC_DISABLE); }
 
 void ProcessorCounters::restart() {
   for (Counter& counter : counters_) counter.before = read(counter).value_or(Reading());
@@ -76,14 +76,14 @@ ProcessorCounts ProcessorCounters::counts() const {
     const std::optional<Reading> now = read(counters_[i]);
     if (!now) continue;
     const Reading& before = counters_[i].before;
-    const auto wanted = static_cast<double>(now->wanted_ns - before.wanted_ns);
-    const auto done = static_cast<double>(now->done_ns - before.done_ns);
+    const auto enabled = static_cast<double>(now->enabled_ns - before.enabled_ns);
+    const auto running = static_cast<double>(now->running_ns - before.running_ns);
     const std::uint64_t count = now->count - before.count;
-    if (wanted == done) {
+    if (enabled == running) {
       counts.values[i] = count;
-    } else if (done > 0) {
-      counts.values[i] =
-          static_cast<std::uint64_t>(std::llround(static_cast<double>(count) * (wanted / done)));
+    } else if (running > 0) {
+      counts.values[i] = static_cast<std::uint64_t>(
+          std::llround(static_cast<double>(count) * (enabled / running)));
     }
   }
   return counts;

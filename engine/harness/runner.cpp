@@ -17,42 +17,42 @@ class FrameCounter {
   explicit FrameCounter(CaseResult& result)
       : result_(result),
         is_first_pass_(result.repetitions.empty()),
-        number_(static_cast<int>(result.repetitions.size()) + 1) {}
+        repetition_(static_cast<int>(result.repetitions.size()) + 1) {}
 
-  /// Counts the frame that was run last; each call advances to the next frame.
+  /// Counts the last frame run; each call advances to the next frame.
   void count(const Frame& frame, CaseRun& case_run, Oracle& oracle) {
-    if (passed_ == result_.frames.size()) result_.frames.emplace_back();
-    FrameCounts& counts = result_.frames[passed_++];
+    if (frames_done_ == result_.frames.size()) result_.frames.emplace_back();
+    FrameCounts& counts = result_.frames[frames_done_++];
     auto difference = case_run.check(frame, oracle);
-    if (difference) keepWorst(counts, *difference);
+    if (difference) mergeMaxima(counts, *difference);
     if (is_first_pass_ && case_run.answered()) {
       countWork(counts, case_run);
       countBodies(frame);
     }
     if (!difference || !difference->isMismatch()) return;
-    difference->repetition = number_;
+    difference->repetition = repetition_;
     result_.differences.push_back(std::move(*difference));
   }
 
  private:
-  /// Keeps the maximum over the passes: repeated wrong pairs are counted once.
-  void keepWorst(FrameCounts& counts, const FrameDifference& difference) {
-    const auto keep = [&](FrameCount which, std::uint64_t found, std::uint64_t& sum) {
+  /// Stores the maxima over the passes: repeated wrong pairs are counted once.
+  void mergeMaxima(FrameCounts& counts, const FrameDifference& difference) {
+    const auto merge = [&](FrameCount which, std::uint64_t found, std::uint64_t& sum) {
       const std::uint64_t more = found - std::min(found, counts[which]);
       counts[which] += more;
       sum += more;
     };
-    keep(FrameCount::missed, difference.missed_count, result_.missed_count);
-    keep(FrameCount::false_pairs, difference.false_count, result_.false_count);
-    keep(FrameCount::allowed_extra, difference.allowed_extra_count, result_.allowed_extra_count);
-    keep(FrameCount::invalid, difference.invalid_count, result_.invalid_count);
+    merge(FrameCount::missed, difference.missed_count, result_.missed_count);
+    merge(FrameCount::false_pairs, difference.false_count, result_.false_count);
+    merge(FrameCount::allowed_extra, difference.allowed_extra_count, result_.allowed_extra_count);
+    merge(FrameCount::invalid, difference.invalid_count, result_.invalid_count);
   }
 
-  /// Counts pairs and work, in the first pass only: the others repeat it.
+  /// Counts pairs and work, in the first pass only: the others repeat them.
   void countWork(FrameCounts& counts, CaseRun& case_run) {
     counts[FrameCount::pairs] = case_run.pairs();
     counts[FrameCount::changed_bodies] = case_run.changedBodies();
-    const std::size_t before = passed_ - 1;
+    const std::size_t before = frames_done_ - 1;
     addToMean(result_.pairs_mean, case_run.pairs(), before);
     result_.pairs_max = std::max(result_.pairs_max, case_run.pairs());
     for (const auto& [name, count] : case_run.counters()) {
@@ -65,7 +65,7 @@ class FrameCounter {
     const auto present =
         static_cast<std::uint64_t>(std::ranges::count_if(frame.boxes, std::not_fn(isEmpty)));
     Population& bodies = result_.bodies ? *result_.bodies : result_.bodies.emplace();
-    addToMean(bodies.mean, present, passed_ - 1);
+    addToMean(bodies.mean, present, frames_done_ - 1);
     bodies.max = std::max(bodies.max, present);
   }
 
@@ -76,8 +76,8 @@ class FrameCounter {
 
   CaseResult& result_;
   bool is_first_pass_;
-  int number_;
-  std::size_t passed_ = 0;  ///< frames
+  int repetition_;
+  std::size_t frames_done_ = 0;
 };
 
 }  // namespace
@@ -110,7 +110,8 @@ std::string variantOf(const CaseResult& result) {
   std::string text = caseNameOf(result) + '/';
   for (const std::string& part :
        {fmt::format("/{}/", isaName(result.isa)), fmt::format("/t{}/", result.threads)}) {
-    if (const std::size_t at = text.find(part); at != text.npos) text.erase(at, part.size() - 1);
+    const std::size_t position = text.find(part);
+    if (position != text.npos) text.erase(position, part.size() - 1);
   }
   text.pop_back();
   return text;

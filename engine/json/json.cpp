@@ -19,8 +19,8 @@ InputError notJson(std::string_view name, const nlohmann::detail::exception& err
 class KeyReader final : public JsonEvents {
  public:
   /// Stops at the key, or at its value if that is requested.
-  KeyReader(std::string_view wanted, bool wants_text, std::string_view name)
-      : JsonEvents(name), wanted_(wanted), wants_text_(wants_text) {}
+  KeyReader(std::string_view key, bool reads_value, std::string_view name)
+      : JsonEvents(name), key_(key), reads_value_(reads_value) {}
 
   bool start_object(std::size_t) override {
     in_object_ |= depth_ == 0;
@@ -36,27 +36,27 @@ class KeyReader final : public JsonEvents {
     --depth_;
     return true;
   }
-  bool key(string_t& key) override {
-    if (isAtTop()) is_there_ = key == wanted_;
-    return wants_text_ || !is_there_;
+  bool key(string_t& name) override {
+    if (isAtTop()) found_ = name == key_;
+    return reads_value_ || !found_;
   }
   bool string(string_t& text) override {
-    if (isAtTop() && is_there_) text_ = text;
+    if (isAtTop() && found_) text_ = text;
     return text_.empty();
   }
 
   /// Whether the last key of the outermost object is the requested one.
-  [[nodiscard]] bool isThere() const { return is_there_; }
+  [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
   [[nodiscard]] bool isAtTop() const { return in_object_ && depth_ == 1; }
 
-  std::string_view wanted_;
-  bool wants_text_;
+  std::string_view key_;
+  bool reads_value_;
   std::size_t depth_ = 0;
   bool in_object_ = false;
-  bool is_there_ = false;
+  bool found_ = false;
   std::string text_;
 };
 
@@ -104,7 +104,7 @@ std::string jsonSchema(std::string_view text, std::string_view name) {
 bool jsonHasKey(std::string_view text, std::string_view key, std::string_view name) {
   KeyReader reader(key, false, name);
   readJson(text, reader);
-  return reader.isThere();
+  return reader.found();
 }
 
 }  // namespace broadmark

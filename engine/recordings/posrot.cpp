@@ -13,21 +13,21 @@ namespace broadmark {
 namespace {
 
 static_assert(sizeof(Pose) == kRecordBytes && offsetof(Pose, rotation) == 16,
-              "poses are read as they lie in the file");
+              "poses are read in file layout");
 
 /// The distance from |x| to the next float.
 float spacing(float x) {
   return std::nextafter(std::abs(x), std::numeric_limits<float>::infinity()) - std::abs(x);
 }
 
-/// Half an edge of a body with recorded bounds `low` and `high`. Both bounds are rounded, so that
+/// Half an edge of a body with recorded bounds `low` and `high`. Both bounds are rounded, so
 /// the same edge varies a little with the position; user-chosen sizes are usually whole
 /// thousandths.
 float halfEdge(float low, float high) {
   const double half = (double{high} - double{low}) / 2;
-  const double usual = std::round(half * 1000) / 1000;
-  const double uncertain = 2 * double{spacing(std::max(std::abs(low), std::abs(high)))};
-  return static_cast<float>(usual > 0 && std::abs(usual - half) <= uncertain ? usual : half);
+  const double rounded = std::round(half * 1000) / 1000;
+  const double tolerance = 2 * double{spacing(std::max(std::abs(low), std::abs(high)))};
+  return static_cast<float>(rounded > 0 && std::abs(rounded - half) <= tolerance ? rounded : half);
 }
 
 Vec3 halfExtentsOf(const Aabb& box) {
@@ -42,19 +42,19 @@ PosrotReader::PosrotReader(const std::filesystem::path& path)
 
 PosrotReader::PosrotReader(FileDescriptor file, std::string name)
     : OriginalRecording(std::move(file), std::move(name)),
-      balls_(scene().object_type == "Spheres") {}
+      are_spheres_(scene().object_type == "Spheres") {}
 
 void PosrotReader::readSizes() {
-  unturned_.resize(scene().objects);
-  readSet(0, std::as_writable_bytes(std::span(unturned_)));
-  requireValid<Aabb>(unturned_, 0, scene(), name(), "box");
+  unrotated_.resize(scene().objects);
+  readSet(0, std::as_writable_bytes(std::span(unrotated_)));
+  requireValid<Aabb>(unrotated_, 0, scene(), name(), "box");
   half_extents_.resize(scene().objects);
-  std::ranges::transform(unturned_, half_extents_.begin(), halfExtentsOf);
+  std::ranges::transform(unrotated_, half_extents_.begin(), halfExtentsOf);
 }
 
 std::span<const Aabb> PosrotReader::readBoxes(std::uint32_t index) {
   if (half_extents_.empty()) readSizes();
-  if (index == 0) return unturned_;
+  if (index == 0) return unrotated_;
   poses_.resize(scene().objects);
   boxes_.resize(scene().objects);
   readSet(index, std::as_writable_bytes(std::span(poses_)));
@@ -72,7 +72,7 @@ PosrotWriter::PosrotWriter(const std::filesystem::path& path, const SceneInfo& s
 
 PosrotWriter::~PosrotWriter() = default;
 
-void PosrotWriter::writeBoxes(std::span<const Aabb> unturned) { file_->append(unturned, "box"); }
+void PosrotWriter::writeBoxes(std::span<const Aabb> unrotated) { file_->append(unrotated, "box"); }
 
 void PosrotWriter::write(std::span<const Pose> poses) {
   // Copied by component: in memory the fourth component of a position is undefined.

@@ -1,4 +1,4 @@
-// Reading recording 2: keeps the boxes, and updates the changed ones.
+// Reading recording 2: retains the boxes, and updates the changed ones.
 
 #include "broadmark/recordings/recording2.h"
 
@@ -16,12 +16,12 @@
 namespace broadmark {
 namespace {
 
-/// Rows read at once: their bytes fit in the cache.
+/// Rows per read; their bytes fit in the cache.
 constexpr std::uint64_t kPieceRows = 1 << 13;
 
 template <class... Arguments>
-[[noreturn]] void refuse(const std::string& name, fmt::format_string<Arguments...> text,
-                         Arguments&&... arguments) {
+[[noreturn]] void throwInputError(const std::string& name, fmt::format_string<Arguments...> text,
+                                  Arguments&&... arguments) {
   throw InputError(
       fmt::format("{}: {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)));
 }
@@ -41,33 +41,37 @@ Recording2Reader::Recording2Reader(FileDescriptor file, std::string name)
 }
 
 void Recording2Reader::open() {
-  constexpr std::uint64_t kLeast = sizeof(RecordingStart) + sizeof(RecordingEnd);
-  if (bytes() < kLeast) {
-    refuse(name(), "{} bytes is too short: a recording 2 has at least {}", bytes(), kLeast);
+  constexpr std::uint64_t kMinBytes = sizeof(RecordingStart) + sizeof(RecordingEnd);
+  if (bytes() < kMinBytes) {
+    throwInputError(name(), "{} bytes is too short: a recording 2 has at least {}", bytes(),
+                    kMinBytes);
   }
   RecordingStart start;
   read(0, std::as_writable_bytes(std::span(&start, 1)));
   if (start.magic != kRecording2Magic) {
-    refuse(name(), "byte 0: is not '{}': not a recording 2", fmt::join(kRecording2Magic, ""));
+    throwInputError(name(), "byte 0: is not '{}': not a recording 2",
+                    fmt::join(kRecording2Magic, ""));
   }
   const std::uint64_t last = bytes() - sizeof(RecordingEnd);
   RecordingEnd end;
   read(last, std::as_writable_bytes(std::span(&end, 1)));
   if (end.magic != kRecording2Magic) {
-    refuse(name(), "byte {}: does not end as a recording 2: cut short, or not finished?", last);
+    throwInputError(name(), "byte {}: does not end as a recording 2: cut short, or not finished?",
+                    last);
   }
   constexpr std::uint64_t kMaxHeaderBytes = 1 << 28;  // scene parameters may take megabytes
   if (start.header_bytes > std::min(kMaxHeaderBytes, last - sizeof start) ||
       (sizeof start + start.header_bytes) % kRecordingAlignment != 0) {
-    refuse(name(), "byte 8: a header of {} bytes cannot be: it ends at a multiple of {}",
-           start.header_bytes, kRecordingAlignment);
+    throwInputError(
+        name(), "byte 8: invalid header size of {} bytes: the header must end at a multiple of {}",
+        start.header_bytes, kRecordingAlignment);
   }
   hasher_.restart();
   hasher_.add(std::as_bytes(std::span(&start, 1)));
   const std::uint64_t frames_offset = readHeader(start.header_bytes, end.index_offset);
   readIndex(end.index_offset);
   if (hasher_.value() != end.hash) {
-    refuse(name(), "header or index: damaged: their checksum is another");
+    throwInputError(name(), "header or index: damaged: wrong checksum");
   }
   checkIndex(frames_offset, end.index_offset);
 }
@@ -85,16 +89,16 @@ std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t ind
   const std::uint64_t last = bytes() - sizeof(RecordingEnd);
   const std::uint64_t index_bytes = sizeof(RecordedFrame) * (std::uint64_t{1} + scene.frames);
   if (offset + sizeof(PackedBox) * std::uint64_t{scene.objects} + index_bytes > last) {
-    refuse(name(), "{} bytes is too short for {} objects and {} frames", bytes(), scene.objects,
-           scene.frames);
+    throwInputError(name(), "{} bytes is too short for {} objects and {} frames", bytes(),
+                    scene.objects, scene.frames);
   }
   if (index_offset != last - index_bytes) {
-    refuse(name(), "byte {}: the index of {} frames begins at byte {}, not {}", last, scene.frames,
-           last - index_bytes, index_offset);
+    throwInputError(name(), "byte {}: the index of {} frames begins at byte {}, not {}", last,
+                    scene.frames, last - index_bytes, index_offset);
   }
   std::vector<std::byte> groups(fields.groupBytes());
   if (groups.size() > index_offset - offset) {
-    refuse(name(), "byte {}: ends within the groups of the bodies", index_offset);
+    throwInputError(name(), "byte {}: ends within the groups of the bodies", index_offset);
   }
   read(offset, groups);
   hasher_.add(groups);
@@ -113,16 +117,16 @@ void Recording2Reader::readIndex(std::uint64_t offset) {
 void Recording2Reader::checkIndex(std::uint64_t begin, std::uint64_t end) const {
   std::uint64_t offset = begin;
   for (std::uint32_t i = 0; i < index_.size(); ++i) {
-    const auto& [place, changed, key, hash] = index_[i];
+    const auto& [start, changed, key, hash] = index_[i];
     const bool whole = key == i;
-    const bool right = place == offset && changed <= scene().objects &&
-                       (i > 0 || (whole && changed == 0)) && (whole || key == index_[i - 1].key);
-    if (!right) {
+    const bool is_valid = start == offset && changed <= scene().objects &&
+                          (i > 0 || (whole && changed == 0)) && (whole || key == index_[i - 1].key);
+    if (!is_valid) {
       throw InputError(
           fmt::format("{}: byte {}: index: frame {} cannot be at "
                       "byte {} with {} changed bodies and "
                       "key frame {}",
-                      name(), end + sizeof(RecordedFrame) * i, i, place, changed, key));
+                      name(), end + sizeof(RecordedFrame) * i, i, start, changed, key));
     }
     offset += FrameLayout(changed, whole, scene().objects).bytes();
     if (offset > end) break;
@@ -136,9 +140,9 @@ void Recording2Reader::checkIndex(std::uint64_t begin, std::uint64_t end) const 
 std::span<const Aabb> Recording2Reader::readBoxes(std::uint32_t index) {
   if (current_ == index) return boxes_;
   const std::uint32_t key = index_[index].key;
-  const bool onward = current_ && key <= *current_ && *current_ < index;
+  const bool is_ahead = current_ && key <= *current_ && *current_ < index;
   const bool next = current_ && *current_ + 1 == index;
-  for (std::uint32_t i = onward || next ? *current_ + 1 : key; i <= index; ++i) readFrame(i);
+  for (std::uint32_t i = is_ahead || next ? *current_ + 1 : key; i <= index; ++i) readFrame(i);
   return boxes_;
 }
 
@@ -181,8 +185,8 @@ void Recording2Reader::readIds(std::uint32_t index) {
   }
 }
 
-template <class Take>
-void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
+template <class Visit>
+void Recording2Reader::readRows(std::uint32_t index, Visit&& visit) {
   const RecordedFrame& frame = index_[index];
   const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
   std::uint64_t offset = frame.offset + layout.idBytes();
@@ -195,13 +199,13 @@ void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
     for (std::uint64_t row = 0; row < rows; ++row) {
       const Aabb box = unpacked(raw.data() + sizeof(PackedBox) * row);
       if (!isRecordable(box, scene().all_present)) failAt(index, first + row, box);
-      take(first + row, box);
+      visit(first + row, box);
     }
   }
 }
 
 void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
-  // Users of `changed` would miss an unlisted change.
+  // Consumers of `changed` would miss an unlisted change.
   if (follows && changed_ < scene().objects) {
     readRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body, const Aabb& box) mutable {
       if (listed < changed_ && ids_[listed] == body) {
@@ -247,8 +251,8 @@ void Recording2Reader::fail(std::uint32_t index, const std::string& what) {
   if (hasher_.value() == frame.hash) {
     throw InputError(fmt::format("{}: frame {}, {}", name(), index, what));
   }
-  throw InputError(fmt::format("{}: frame {} (bytes {} to {}): damaged: its checksum is another",
-                               name(), index, frame.offset, frame.offset + layout.bytes() - 1));
+  throw InputError(fmt::format("{}: frame {} (bytes {} to {}): damaged: wrong checksum", name(),
+                               index, frame.offset, frame.offset + layout.bytes() - 1));
 }
 
 }  // namespace broadmark

@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::string_view kSchema = "broadmark-recording/2";
 
-/// A per-body array that a header may announce: its element size, its place in a filter, and how a
-/// body gets its value.
+/// A per-body array that a header may announce: its element size, and the access to a filter's
+/// array and to a body's value.
 struct Group {
   std::string_view key;
   std::uint64_t bytes;
   std::span<const std::byte> (*in)(const CollisionFilter&);
-  void (*put)(BodyGroups&, const std::byte*);
+  void (*set)(BodyGroups&, const std::byte*);
 };
 
 constexpr Group kGroups[] = {
@@ -83,17 +83,17 @@ std::string nameIn(const JsonFields& fields, const char* key) {
 Aabb worldIn(const JsonFields& fields) {
   PackedBox numbers{};
   const Json& corners = fields.array("world");
-  bool right = corners.size() == 2;
-  for (std::size_t i = 0; right && i < 2; ++i)
-    right = corners[i].is_array() && corners[i].size() == 3;
-  for (std::size_t i = 0; right && i < numbers.size(); ++i) {
+  bool is_valid = corners.size() == 2;
+  for (std::size_t i = 0; is_valid && i < 2; ++i)
+    is_valid = corners[i].is_array() && corners[i].size() == 3;
+  for (std::size_t i = 0; is_valid && i < numbers.size(); ++i) {
     const Json& number = corners[i / 3][i % 3];
-    right = number.is_number() &&
-            std::abs(number.get<double>()) <= double{std::numeric_limits<float>::max()};
-    if (right) numbers[i] = static_cast<float>(number.get<double>());
+    is_valid = number.is_number() &&
+               std::abs(number.get<double>()) <= double{std::numeric_limits<float>::max()};
+    if (is_valid) numbers[i] = static_cast<float>(number.get<double>());
   }
   const Aabb world = unpacked(std::as_bytes(std::span(numbers)).data());
-  if (!right || !isSound(world)) {
+  if (!is_valid || !isSound(world)) {
     throw InputError(fmt::format(
         "{}: two corners of three finite numbers, min <= max, are expected", fields.path("world")));
   }
@@ -104,9 +104,9 @@ LayerMatrix matrixIn(const JsonFields& fields) {
   LayerMatrix matrix;
   for (const Json& pair : fields.array("colliding_layers")) {
     const auto layer = [&](std::size_t i) {
-      const bool right = pair.is_array() && pair.size() == 2 && pair[i].is_number_unsigned() &&
-                         pair[i].get<std::uint64_t>() < LayerMatrix::kLayers;
-      if (right) return pair[i].get<std::size_t>();
+      const bool is_valid = pair.is_array() && pair.size() == 2 && pair[i].is_number_unsigned() &&
+                            pair[i].get<std::uint64_t>() < LayerMatrix::kLayers;
+      if (is_valid) return pair[i].get<std::size_t>();
       throw InputError(fmt::format("{}: pairs of layers from 0 to {} are expected",
                                    fields.path("colliding_layers"), LayerMatrix::kLayers - 1));
     };
@@ -201,7 +201,7 @@ CollisionFilter Recording2Header::filter(std::span<const std::byte> raw) const {
   const std::vector<Group> groups = groupsIn(fields_);
   std::vector<BodyGroups> bodies(groups.empty() ? 0 : objects());
   for (const Group& group : groups) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) group.put(bodies[i], &raw[group.bytes * i]);
+    for (std::size_t i = 0; i < bodies.size(); ++i) group.set(bodies[i], &raw[group.bytes * i]);
     raw = raw.subspan(alignedBytes(group.bytes * bodies.size()));
   }
   const auto unknown = std::ranges::find_if(

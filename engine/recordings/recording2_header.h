@@ -26,8 +26,8 @@ inline PackedBox packed(const Aabb& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
 }
 
-/// Loads a packed box a corner at a time, as a SIMD register: the checks that follow take a third
-/// as long as after scalar loads.
+/// Loads each corner of a packed box as a SIMD register: the subsequent checks take a third
+/// of the time after scalar loads.
 inline Aabb unpacked(const std::byte* raw) {
   using Corner = float __attribute__((vector_size(16)));
   Corner min;
@@ -50,7 +50,7 @@ struct RecordingStart {
 /// The last bytes of the file.
 struct RecordingEnd {
   std::uint64_t index_offset = 0;
-  HashValue hash;  ///< of the index, after all that comes before the first frame
+  HashValue hash;  ///< of all bytes before the first frame, and the index
   std::array<char, 8> magic = kRecording2Magic;
 };
 
@@ -62,7 +62,7 @@ constexpr std::uint64_t alignedBytes(std::uint64_t bytes) {
   return (bytes + kRecordingAlignment - 1) / kRecordingAlignment * kRecordingAlignment;
 }
 
-/// Byte offsets within a frame: its ids, then its boxes. No ids if all bodies changed.
+/// The layout of a frame: its ids, then its boxes. No ids if all bodies changed.
 struct FrameLayout {
   std::uint64_t ids;
   std::uint64_t rows;
@@ -76,7 +76,7 @@ struct FrameLayout {
   }
 };
 
-/// "" or the fault of a box.
+/// The fault of a box; "": none.
 std::string recordingFault(const Aabb& box, bool all_present);
 
 template <class T>
@@ -90,7 +90,7 @@ void appendBytes(std::vector<std::byte>& bytes, std::span<const T> values) {
 /// All bytes before the first frame. Throws InputError for invalid names.
 std::vector<std::byte> recording2Header(const SceneInfo&, const RecordingOrigin&);
 
-/// A header's JSON. All functions throw InputError with the key and what would be right.
+/// A header's JSON. All functions throw InputError with the key and the expected value.
 class Recording2Header {
  public:
   /// `name` is used in messages.

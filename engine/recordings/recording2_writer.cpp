@@ -1,6 +1,6 @@
 // Writing recording 2. Key frames are placed so that the changes between two of them take no more
-// than a whole frame: the file is at most twice as large as without them, and a frame is at most
-// two whole frames away.
+// than a whole frame: the file is at most twice as large as without key frames, and a frame is at
+// most two whole frames away from a key frame.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 namespace broadmark {
 namespace {
 
-/// Maximum distance of key frames: a frame with few changes takes time, too.
+/// Maximum distance of key frames: even frames with few changes take time.
 constexpr std::uint32_t kMaxBetweenKeys = 256;
 
 class Recording2File final : public RecordingFile {
@@ -25,11 +25,11 @@ class Recording2File final : public RecordingFile {
     hasher_.add(header);
   }
 
-  void write(const Frame& given) override {
-    const std::span<const Aabb> boxes = given.boxes;
+  void write(const Frame& input) override {
+    const std::span<const Aabb> boxes = input.boxes;
     requireBodies(boxes.size());
     const auto index = static_cast<std::uint32_t>(index_.size());
-    const Frame frame = changes_.complete({index, boxes, given.changed});
+    const Frame frame = changes_.complete({index, boxes, input.changed});
     requireRecordable(frame);
     const auto ids = frame.changed.value_or(std::span<const std::uint32_t>());
     const std::uint32_t key = keyOf(frame.index, ids.size());
@@ -39,10 +39,10 @@ class Recording2File final : public RecordingFile {
     block_.clear();
     appendBytes(block_, ids.first(layout.ids));
     block_.resize(layout.bytes());
-    std::byte* place = block_.data() + layout.idBytes();
-    for (std::uint64_t row = 0; row < layout.rows; ++row, place += sizeof(PackedBox)) {
+    std::byte* target = block_.data() + layout.idBytes();
+    for (std::uint64_t row = 0; row < layout.rows; ++row, target += sizeof(PackedBox)) {
       const PackedBox box = packed(boxes[whole ? row : ids[row]]);
-      std::memcpy(place, box.data(), sizeof box);
+      std::memcpy(target, box.data(), sizeof box);
     }
     index_.push_back({size(), static_cast<std::uint32_t>(ids.size()), key, hashOf(block_)});
     append(block_);
@@ -63,7 +63,7 @@ class Recording2File final : public RecordingFile {
     }
   }
 
-  /// The key frame of the next frame, which has `changed` changed bodies.
+  /// The key frame of the next frame, with `changed` changed bodies.
   std::uint32_t keyOf(std::uint32_t index, std::uint64_t changed) {
     since_key_ += changed * (sizeof(std::uint32_t) + sizeof(PackedBox));
     const std::uint64_t whole = sizeof(PackedBox) * std::uint64_t{scene().objects};
@@ -75,7 +75,7 @@ class Recording2File final : public RecordingFile {
 
   /// Writes index and trailer.
   void complete() override {
-    requireWhole(index_.size());
+    requireComplete(index_.size());
     block_.clear();
     appendBytes(block_, std::span<const RecordedFrame>(index_));
     hasher_.add(block_);

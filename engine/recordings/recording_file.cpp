@@ -19,7 +19,7 @@ constexpr std::size_t kTextBytes = 128;
 /// Frames without objects take no bytes, so the file's length does not bound their number.
 constexpr std::uint32_t kMaxEmptyFrames = 1'000'000;
 
-/// A NUL-padded text of the header.
+/// Reads a NUL-padded text of the header.
 std::string headerText(const char (&field)[kTextBytes], std::string_view what, std::size_t offset,
                        const std::string& name) {
   const auto* end = std::find(std::begin(field), std::end(field), '\0');
@@ -124,7 +124,7 @@ std::string fault(const Pose& pose) {
   if (any([](float value) { return std::isinf(value); })) return "is infinite";
   const float squared = squaredLength(pose.rotation);
   if (std::abs(squared - 1) <= kRotationTolerance) return {};
-  return fmt::format("has a quaternion of length {:.6g} (1 is right)", std::sqrt(squared));
+  return fmt::format("has a quaternion of length {:.6g} (expected: 1)", std::sqrt(squared));
 }
 
 RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo& scene,
@@ -143,11 +143,12 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo&
 void RecordingFile::append(std::vector<std::byte>& block) {
   waitForWrite();
   size_ += block.size();
-  std::swap(block, handed_);
+  std::swap(block, writing_block_);
   constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
-  if (handed_.size() < kLarge) return store(handed_);
+  if (writing_block_.size() < kLarge) return store(writing_block_);
   // Deferred, to waitForWrite(), if the system grants no more threads.
-  writing_ = std::async(std::launch::async | std::launch::deferred, [this] { store(handed_); });
+  writing_ =
+      std::async(std::launch::async | std::launch::deferred, [this] { store(writing_block_); });
 }
 
 std::string RecordingFile::finish() {
@@ -169,14 +170,14 @@ void RecordingFile::waitForWrite() {
 
 void RecordingFile::store(std::span<const std::byte> bytes) {
   // In blocks, so that hashed data are still in the cache when written.
-  constexpr std::size_t kPiece = 1 << 18;
-  for (std::size_t start = 0; start < bytes.size(); start += kPiece) {
-    const auto piece = bytes.subspan(start, std::min(kPiece, bytes.size() - start));
-    hasher_.add(piece);
+  constexpr std::size_t kBlock = 1 << 18;
+  for (std::size_t start = 0; start < bytes.size(); start += kBlock) {
+    const auto block = bytes.subspan(start, std::min(kBlock, bytes.size() - start));
+    hasher_.add(block);
     if (named_) {
-      named_->write(piece);
+      named_->write(block);
     } else {
-      writeAll(unnamed_.get(), piece, name_);
+      writeAll(unnamed_.get(), block, name_);
     }
   }
 }
@@ -187,7 +188,7 @@ void RecordingFile::requireBodies(std::size_t bodies) const {
       fmt::format("{}: a set of {} bodies instead of {}", name_, bodies, scene_.objects));
 }
 
-void RecordingFile::requireWhole(std::uint64_t sets) const {
+void RecordingFile::requireComplete(std::uint64_t sets) const {
   if (sets == std::uint64_t{1} + scene_.frames) return;
   throw std::logic_error(
       fmt::format("{}: {} sets written instead of 1 + {}", name_, sets, scene_.frames));

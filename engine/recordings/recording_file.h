@@ -50,11 +50,11 @@ void requireNames(const SceneInfo&);
 /// Whether the text is valid as the name of a scene or an object type.
 bool isName(std::string_view text);
 
-/// "" or the fault of a record.
+/// The fault of a record; "": none.
 std::string fault(const Aabb&);
 std::string fault(const Pose&);
 
-// A branchless check, sufficient for nearly all records. Comparisons with NaN are false.
+/// A branchless validity check. Comparisons with NaN are false.
 inline bool isSound(const Aabb& box) {
   constexpr float kHuge = std::numeric_limits<float>::max();
   // All axes at once: a corner is a SIMD register. Both compilers have this extension.
@@ -66,7 +66,7 @@ inline bool isSound(const Aabb& box) {
   return (sound[0] & sound[1] & sound[2]) != 0;
 }
 
-/// Whether a recording 2 may hold it: a sound box, or the empty box if bodies may be absent.
+/// Whether a recording 2 may hold the box: a sound box, or the empty box if bodies may be absent.
 inline bool isRecordable(const Aabb& box, bool all_present) {
   return isSound(box) || (!all_present && box == kEmptyBox);
 }
@@ -98,22 +98,22 @@ void requireValid(std::span<const Record> records, std::uint64_t set, const Scen
 }
 
 /// A recording being written: hashed incrementally, visible only after finish(). A large block is
-/// hashed and written while the caller makes the next one.
+/// hashed and written while the caller prepares the next one.
 class RecordingFile {
  public:
-  /// Writes to `path`, or for an empty one to an unnamed file in the temporary directory; begins
+  /// Writes to `path`, or if it is empty to an unnamed file in the temporary directory; starts
   /// with `header`. Throws InputError if the path cannot be written.
   RecordingFile(const std::filesystem::path& path, const SceneInfo&, std::vector<std::byte> header);
   RecordingFile(const RecordingFile&) = delete;  // the writing thread refers to this
   RecordingFile& operator=(const RecordingFile&) = delete;
   virtual ~RecordingFile() = default;
 
-  /// Appends the boxes of the next frame, whatever its index. Throws InputError for an invalid box,
-  /// or if the disc was full, at the latest in finish().
+  /// Appends the boxes of the next frame, regardless of its index. Throws InputError for an invalid
+  /// box, or if the disk was full, at the latest in finish().
   virtual void write(const Frame&) = 0;
   /// Completes the recording and renames the file. Returns its hash.
   std::string finish();
-  /// Completes the recording and hands over the unnamed file.
+  /// Completes the recording and returns the unnamed file.
   FileDescriptor finishTemporary();
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -126,12 +126,12 @@ class RecordingFile {
   /// Checks that all frames were written, and appends the trailer.
   virtual void complete() = 0;
   /// Throws std::logic_error unless `sets` is the scene's number of frames.
-  void requireWhole(std::uint64_t sets) const;
+  void requireComplete(std::uint64_t sets) const;
   /// Throws std::logic_error unless `bodies` is the scene's number of bodies.
   void requireBodies(std::size_t bodies) const;
 
  private:
-  /// Waits until the last block is written. Throws InputError when that failed.
+  /// Waits for the last write. Throws InputError if it failed.
   void waitForWrite();
   void store(std::span<const std::byte> bytes);
 
@@ -141,8 +141,8 @@ class RecordingFile {
   FileDescriptor unnamed_;
   Hasher hasher_;
   std::uint64_t size_ = 0;
-  std::vector<std::byte> handed_;  ///< the last block, possibly being written
-  std::future<void> writing_;      ///< last member: its thread uses all of the above
+  std::vector<std::byte> writing_block_;  ///< the last block, possibly being written
+  std::future<void> writing_;             ///< last member: its thread uses all of the above
 };
 
 /// A .broadmark recording.
@@ -157,34 +157,34 @@ class OriginalRecordingFile final : public RecordingFile {
 
   void write(const Frame& frame) override { append(frame.boxes, "box"); }
 
-  /// Appends a set; not if a record is invalid.
+  /// Appends a set. Throws InputError if a record is invalid.
   template <class Record>
   void append(std::span<const Record> records, std::string_view what) {
     append(records, what, std::as_bytes(records));
   }
-  /// Appends a set of records with another layout in the file.
+  /// Appends a set of records with a different layout in the file.
   template <class Record>
   void append(std::span<const Record> records, std::string_view what,
               std::span<const std::byte> bytes) {
     requireBodies(bytes.size() / kRecordBytes);
-    filling_.resize(bytes.size());
+    set_.resize(bytes.size());
     // In blocks, so that checked data are still in the cache when copied.
     constexpr std::size_t kPiece = 1 << 13;
     for (std::size_t first = 0; first < records.size(); first += kPiece) {
       const auto piece = records.subspan(first, std::min(kPiece, records.size() - first));
       requireValid(piece, sets_, scene(), name(), what, first);
       std::ranges::copy(bytes.subspan(first * kRecordBytes, piece.size() * kRecordBytes),
-                        filling_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
+                        set_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
     }
-    RecordingFile::append(filling_);
+    RecordingFile::append(set_);
     ++sets_;
   }
 
  private:
-  void complete() override { requireWhole(sets_); }
+  void complete() override { requireComplete(sets_); }
 
   std::uint64_t sets_ = 0;
-  std::vector<std::byte> filling_;  ///< the set being assembled
+  std::vector<std::byte> set_;  ///< the set being assembled
 };
 
 }  // namespace broadmark

@@ -10,8 +10,8 @@
 
 namespace broadmark {
 
-Part partOf(const SceneInfo& scene, std::vector<std::uint32_t> bodies,
-            std::vector<std::uint32_t> frames) {
+Selection selectionOf(const SceneInfo& scene, std::vector<std::uint32_t> bodies,
+                      std::vector<std::uint32_t> frames) {
   CollisionFilter filter = scene.filter.of(bodies);
   return {.bodies = std::move(bodies),
           .frames = std::move(frames),
@@ -19,15 +19,15 @@ Part partOf(const SceneInfo& scene, std::vector<std::uint32_t> bodies,
           .filter = std::move(filter)};
 }
 
-Part wholePart(const SceneInfo& scene, std::uint32_t last_frame) {
+Selection selectAll(const SceneInfo& scene, std::uint32_t last_frame) {
   std::vector<std::uint32_t> bodies(scene.objects);
   std::vector<std::uint32_t> frames(std::size_t{last_frame} + 1);
   std::iota(bodies.begin(), bodies.end(), 0U);
   std::iota(frames.begin(), frames.end(), 0U);
-  return partOf(scene, std::move(bodies), std::move(frames));
+  return selectionOf(scene, std::move(bodies), std::move(frames));
 }
 
-SubRecording::SubRecording(IndexedFrames& whole, Part part, std::string name)
+SubRecording::SubRecording(IndexedFrames& whole, Selection part, std::string name)
     : whole_(whole), part_(std::move(part)), scene_(whole.scene()) {
   scene_.name = std::move(name);
   scene_.objects = static_cast<std::uint32_t>(part_.bodies.size());
@@ -56,7 +56,8 @@ std::string partName(const SceneInfo& scene) {
   return scene.name.substr(0, kMaxNameLength - kSuffix.size()).append(kSuffix);
 }
 
-std::string writePart(const std::filesystem::path& path, IndexedFrames& whole, const Part& part) {
+std::string writeSelection(const std::filesystem::path& path, IndexedFrames& whole,
+                           const Selection& part) {
   SubRecording frames(whole, part, partName(whole.scene()));
   RecordingWriter writer(path, frames.scene());
   recordAll(frames, writer);

@@ -1,4 +1,4 @@
-// Swept boxes around arbitrary frames. Where the changed bodies are known, the cost of a frame is
+// Swept boxes for arbitrary frames. If the changed bodies are known, the cost of a frame is
 // that of the bodies that changed in it and in the frame before: after a body stops, its swept box
 // shrinks once more.
 
@@ -15,11 +15,11 @@
 namespace broadmark {
 namespace {
 
-constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-// The next lower float; the lowest one stays, as boxes are finite.
-float below(float value) { return std::nextafter(value, -kLargest); }
-float above(float value) { return std::nextafter(value, kLargest); }
+// The next lower float, limited to finite values.
+float below(float value) { return std::nextafter(value, -kMaxFloat); }
+float above(float value) { return std::nextafter(value, kMaxFloat); }
 
 }  // namespace
 
@@ -65,19 +65,19 @@ std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {
 }
 
 std::optional<std::span<const std::uint32_t>> SweptFrames::changed() const {
-  if (!knows_changed_) return {};
+  if (!reports_changes_) return {};
   return changed_;
 }
 
 void SweptFrames::begin(std::uint32_t index) {
   const Frame frame = frames_->at(index);
-  knows_changed_ = frame.changed.has_value();
+  reports_changes_ = frame.changed.has_value();
   before_.assign(frame.boxes.begin(), frame.boxes.end());
   for (std::size_t body = 0; body < boxes_.size(); ++body) {
     boxes_[body] = sweptBox(before_[body], before_[body]);
   }
   changed_.clear();
-  // Any of these boxes may differ in the next frame, except after the initial pose.
+  // Any box may differ in the next frame, except after the initial pose.
   moved_.resize(index == 0 ? 0 : boxes_.size());
   std::iota(moved_.begin(), moved_.end(), 0U);
 }

@@ -39,30 +39,30 @@ double autocovariance(std::span<const double> values, double centre, std::size_t
   return sum / static_cast<double>(values.size());
 }
 
-/// The lag from which on autocorrelations are noise: the next few are all small.
+/// The last lag with a significant autocorrelation: the next few are all noise.
 std::size_t lastSignificantLag(const std::vector<double>& covariances, std::size_t count) {
   const auto n = static_cast<double>(count);
   const double noise = 2 * std::sqrt(std::log10(n) / n) * covariances[0];
   constexpr std::size_t kRun = 5;
-  std::size_t quiet = 0;
+  std::size_t consecutive = 0;
   for (std::size_t lag = 1; lag < covariances.size(); ++lag) {
-    quiet = std::abs(covariances[lag]) < noise ? quiet + 1 : 0;
-    if (quiet == kRun) return lag - kRun;
+    consecutive = std::abs(covariances[lag]) < noise ? consecutive + 1 : 0;
+    if (consecutive == kRun) return lag - kRun;
   }
   return covariances.size() - 1;
 }
 
-std::size_t shortestBlock(std::size_t count) {
+std::size_t minBlockLength(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(2 * std::cbrt(static_cast<double>(count))));
 }
 
-/// +1 for each value above the median, -1 below: the signs that determine the median's variance.
-std::vector<double> sidesOfMedian(std::span<const double> values, double median) {
-  std::vector<double> sides(values.size());
-  std::ranges::transform(values, sides.begin(), [median](double value) {
+/// +1 for each value above the median, -1 below: these signs determine the median's variance.
+std::vector<double> signsAroundMedian(std::span<const double> values, double median) {
+  std::vector<double> signs(values.size());
+  std::ranges::transform(values, signs.begin(), [median](double value) {
     return static_cast<double>(value > median) - static_cast<double>(value < median);
   });
-  return sides;
+  return signs;
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ std::size_t blockLength(std::span<const double> values) {
 }
 
 std::size_t safeBlockLength(std::span<const double> values) {
-  return std::max(blockLength(values), shortestBlock(values.size()));
+  return std::max(blockLength(values), minBlockLength(values.size()));
 }
 
 Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
@@ -154,17 +154,17 @@ Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
   }
   // Few blocks underestimate the variance, as few values do (Student).
   const double blocks = static_cast<double>(count) / static_cast<double>(block);
-  const double widen = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
-  return {estimate + widen * (quantile(resampled, 0.025) - estimate),
-          estimate + widen * (quantile(resampled, 0.975) - estimate)};
+  const double factor = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
+  return {estimate + factor * (quantile(resampled, 0.025) - estimate),
+          estimate + factor * (quantile(resampled, 0.975) - estimate)};
 }
 
 Estimate medianOfSeries(std::span<const double> values) {
   const double median = quantile(values, 0.5);
-  const std::size_t block = safeBlockLength(sidesOfMedian(values, median));
+  const std::size_t block = safeBlockLength(signsAroundMedian(values, median));
   std::vector<double> sample(values.size());
   const auto median_of = [&](std::span<const std::size_t> drawn) {
-    std::ranges::transform(drawn, sample.begin(), [&](std::size_t place) { return values[place]; });
+    std::ranges::transform(drawn, sample.begin(), [&](std::size_t index) { return values[index]; });
     const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
     std::ranges::nth_element(sample, middle);
     if (sample.size() % 2 == 1) return *middle;

@@ -1,13 +1,11 @@
-// Changing worlds, for algorithms that handle only boxes.
+// Changing worlds for algorithms that handle only boxes.
 //
-// The bodies that take part get contiguous indices, and the algorithm sees only these bodies:
-// O(changed bodies) a frame. Its pairs are mapped back to body ids, and unwanted pairs are dropped:
-// O(pairs).
+// The algorithm sees only the active bodies, under contiguous indices: O(changed bodies) per frame.
+// Its pairs are mapped back to body ids, and unwanted pairs are dropped: O(pairs).
 //
-// Bodies without possible partners are filtered out beforehand. A body takes no part if all layers
-// that collide with its own are empty. Bodies of non-colliding layers (a level, say) take no part
-// either while no body that collides with them is near: O(their number) in a frame with changes.
-// Worlds are put side by side.
+// Bodies without possible partners are inactive. These are bodies with a layer that collides only
+// with empty layers, and bodies of non-colliding layers (static geometry, say) with no colliding
+// body near them: O(their number) per frame with changes. Worlds are laid out side by side.
 
 #include <algorithm>
 #include <numeric>
@@ -23,7 +21,7 @@
 namespace broadmark {
 namespace {
 
-/// Wraps an algorithm that accepts another number of bodies in each frame.
+/// Wraps an algorithm that accepts a varying number of bodies.
 class CompactingAdapter final : public BroadPhase {
  public:
   explicit CompactingAdapter(std::unique_ptr<BroadPhase> algorithm)
@@ -44,12 +42,12 @@ class CompactingAdapter final : public BroadPhase {
     findNonColliding(scene, all);
     worlds_.emplace(scene);
     present_.assign(scene.objects, 0);
-    places_.assign(scene.objects, kAbsent);
+    index_of_.assign(scene.objects, kAbsent);
     boxes_.reserve(scene.objects);
-    if (worlds_->moves()) true_boxes_.reserve(scene.objects);
+    if (worlds_->translates()) true_boxes_.reserve(scene.objects);
     bodies_.reserve(scene.objects);
     changed_.reserve(scene.objects);
-    appearing_.reserve(scene.objects);
+    activated_.reserve(scene.objects);
     applyChanges({first.index, first.boxes, all});
     changed_.clear();
     SceneInfo compacted = scene;
@@ -75,7 +73,7 @@ class CompactingAdapter final : public BroadPhase {
     const PairRuns found = algorithm_->overlaps();
     if (pairs_.size() < found.size()) pairs_.resize(found.size());
     team_->run(found.size(), [&](int, Range runs) {
-      for (std::size_t i = runs.begin; i < runs.end; ++i) translate(found[i], pairs_[i]);
+      for (std::size_t i = runs.begin; i < runs.end; ++i) mapToBodies(found[i], pairs_[i]);
     });
     runs_.clear();
     for (std::size_t i = 0; i < found.size(); ++i) runs_.push_back(pairs_[i].run());
@@ -83,8 +81,8 @@ class CompactingAdapter final : public BroadPhase {
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
   [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
   void drawStructure(DebugDraw& draw) const override {
-    RemappingDebugDraw renamed(draw, bodies_);
-    algorithm_->drawStructure(renamed);
+    RemappingDebugDraw remapped(draw, bodies_);
+    algorithm_->drawStructure(remapped);
   }
 
   void visitCounters(const CounterVisitor& visit) const override {
@@ -93,8 +91,8 @@ class CompactingAdapter final : public BroadPhase {
   }
   void visitSetup(const CounterVisitor& visit) const override { algorithm_->visitSetup(visit); }
   [[nodiscard]] std::string validate() const override {
-    for (std::size_t place = 0; place < bodies_.size(); ++place) {
-      if (places_[bodies_[place]] != place) return "a body is not where it is said to be";
+    for (std::size_t index = 0; index < bodies_.size(); ++index) {
+      if (index_of_[bodies_[index]] != index) return "a body's index is wrong";
     }
     return algorithm_->validate();
   }
@@ -112,36 +110,37 @@ class CompactingAdapter final : public BroadPhase {
       if (non_colliding_.contains(body)) non_colliding_bodies_.push_back(body);
       if (non_colliding_.collideWith(body)) colliding_bodies_.push_back(body);
     }
-    near_.emplace(scene.world);
+    occupancy_.emplace(scene.world);
   }
 
   void applyChanges(const Frame& frame) {
     changed_.clear();
-    appearing_.clear();
+    activated_.clear();
     if (frame.changed->empty()) return;
-    const bool layers_changed = countPresent(frame);
+    const bool layers_changed = updatePopulation(frame);
     markColliding(frame);
-    // Removals first, so that no gap stays and no index is used twice.
-    for (const std::uint32_t body : *frame.changed) consider(body, frame.boxes[body]);
-    for (const std::uint32_t body : non_colliding_bodies_) consider(body, frame.boxes[body]);
+    // Removals first: later insertions then neither leave gaps nor reuse an index.
+    for (const std::uint32_t body : *frame.changed) updateActivity(body, frame.boxes[body]);
+    for (const std::uint32_t body : non_colliding_bodies_) updateActivity(body, frame.boxes[body]);
     if (layers_changed) {
-      for (std::uint32_t body = 0; body < places_.size(); ++body) consider(body, frame.boxes[body]);
+      for (std::uint32_t body = 0; body < index_of_.size(); ++body)
+        updateActivity(body, frame.boxes[body]);
     }
-    for (const std::uint32_t body : appearing_) place(body, frame.boxes[body]);
+    for (const std::uint32_t body : activated_) store(body, frame.boxes[body]);
     for (const std::uint32_t body : *frame.changed) {
-      if (places_[body] != kAbsent) place(body, frame.boxes[body]);
+      if (index_of_[body] != kAbsent) store(body, frame.boxes[body]);
     }
     std::ranges::sort(changed_);
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-    std::erase_if(changed_, [this](std::uint32_t place) { return place >= boxes_.size(); });
+    std::erase_if(changed_, [this](std::uint32_t index) { return index >= boxes_.size(); });
   }
 
-  /// Whether a layer has gained its first possible partner, or lost its last one.
-  bool countPresent(const Frame& frame) {
+  /// Returns whether a layer gained its first possible partner, or lost its last one.
+  bool updatePopulation(const Frame& frame) {
     for (const std::uint32_t body : *frame.changed) {
-      const std::uint8_t is_there = isEmpty(frame.boxes[body]) ? 0 : 1;
-      population_[filter_.layerOf(body)] += is_there;
-      population_[filter_.layerOf(body)] -= std::exchange(present_[body], is_there);
+      const std::uint8_t present = isEmpty(frame.boxes[body]) ? 0 : 1;
+      population_[filter_.layerOf(body)] += present;
+      population_[filter_.layerOf(body)] -= std::exchange(present_[body], present);
     }
     const std::uint32_t before = std::exchange(active_layers_, 0);
     for (std::size_t layer = 0; layer < LayerMatrix::kLayers; ++layer) {
@@ -155,59 +154,59 @@ class CompactingAdapter final : public BroadPhase {
 
   void markColliding(const Frame& frame) {
     if (non_colliding_bodies_.empty()) return;
-    near_->clear();
+    occupancy_->clear();
     for (const std::uint32_t body : colliding_bodies_) {
-      if (present_[body] != 0) near_->mark(frame.boxes[body]);
+      if (present_[body] != 0) occupancy_->mark(frame.boxes[body]);
     }
   }
 
-  [[nodiscard]] bool takesPart(std::uint32_t body, const Aabb& box) {
+  [[nodiscard]] bool isActive(std::uint32_t body, const Aabb& box) {
     if (present_[body] == 0 || (active_layers_ >> filter_.layerOf(body) & 1) == 0) return false;
-    return !non_colliding_.contains(body) || near_->isNear(box);
+    return !non_colliding_.contains(body) || occupancy_->isNear(box);
   }
 
-  void consider(std::uint32_t body, const Aabb& box) {
-    const bool took_part = places_[body] != kAbsent;
-    if (took_part == takesPart(body, box)) return;
-    if (took_part) {
-      remove(places_[body]);
+  void updateActivity(std::uint32_t body, const Aabb& box) {
+    const bool was_active = index_of_[body] != kAbsent;
+    if (was_active == isActive(body, box)) return;
+    if (was_active) {
+      remove(index_of_[body]);
     } else {
-      appearing_.push_back(body);
+      activated_.push_back(body);
     }
   }
 
-  void place(std::uint32_t body, const Aabb& box) {
-    if (places_[body] == kAbsent) {
-      places_[body] = static_cast<std::uint32_t>(boxes_.size());
+  void store(std::uint32_t body, const Aabb& box) {
+    if (index_of_[body] == kAbsent) {
+      index_of_[body] = static_cast<std::uint32_t>(boxes_.size());
       boxes_.emplace_back();
-      if (worlds_->moves()) true_boxes_.emplace_back();
+      if (worlds_->translates()) true_boxes_.emplace_back();
       bodies_.push_back(body);
     }
-    const std::uint32_t place = places_[body];
-    boxes_[place] = worlds_->moves() ? worlds_->moved(body, box) : box;
-    if (worlds_->moves()) true_boxes_[place] = box;
-    changed_.push_back(place);
+    const std::uint32_t index = index_of_[body];
+    boxes_[index] = worlds_->translates() ? worlds_->translated(body, box) : box;
+    if (worlds_->translates()) true_boxes_[index] = box;
+    changed_.push_back(index);
   }
 
   /// The last body fills the gap.
-  void remove(std::uint32_t place) {
-    places_[bodies_[place]] = kAbsent;
+  void remove(std::uint32_t index) {
+    index_of_[bodies_[index]] = kAbsent;
     const std::uint32_t last = bodies_.back();
-    if (last != bodies_[place]) {
-      bodies_[place] = last;
-      boxes_[place] = boxes_.back();
-      if (worlds_->moves()) true_boxes_[place] = true_boxes_.back();
-      places_[last] = place;
-      changed_.push_back(place);
+    if (last != bodies_[index]) {
+      bodies_[index] = last;
+      boxes_[index] = boxes_.back();
+      if (worlds_->translates()) true_boxes_[index] = true_boxes_.back();
+      index_of_[last] = index;
+      changed_.push_back(index);
     }
     bodies_.pop_back();
     boxes_.pop_back();
-    if (worlds_->moves()) true_boxes_.pop_back();
+    if (worlds_->translates()) true_boxes_.pop_back();
   }
 
-  void translate(PairRun found, PairBuffer& wanted) const {
-    wanted.clear();
-    Pair* const room = wanted.room(found.size());
+  void mapToBodies(PairRun found, PairBuffer& result) const {
+    result.clear();
+    Pair* const room = result.room(found.size());
     std::size_t count = 0;
     for (const Pair pair : found) {
       if (pair.a >= pair.b || pair.b >= bodies_.size()) [[unlikely]] {
@@ -218,14 +217,14 @@ class CompactingAdapter final : public BroadPhase {
       room[count] = bodies;
       count += isWanted(pair, bodies) ? 1 : 0;
     }
-    wanted.advance(count);
+    result.advance(count);
   }
 
-  /// Rounding of moved boxes can create an overlap: tests the true boxes.
-  [[nodiscard]] bool isWanted(Pair places, Pair bodies) const {
+  /// Tests the true boxes: rounding of translated ones can create an overlap.
+  [[nodiscard]] bool isWanted(Pair indices, Pair bodies) const {
     if (!filter_.wanted(bodies.a, bodies.b)) return false;
-    return !worlds_->moves() || broadmark::overlaps(enlarged(true_boxes_[places.a], margin_),
-                                                    enlarged(true_boxes_[places.b], margin_));
+    return !worlds_->translates() || broadmark::overlaps(enlarged(true_boxes_[indices.a], margin_),
+                                                         enlarged(true_boxes_[indices.b], margin_));
   }
 
   std::unique_ptr<BroadPhase> algorithm_;
@@ -233,24 +232,24 @@ class CompactingAdapter final : public BroadPhase {
   float margin_ = 0;
   CollisionFilter filter_;
 
-  // Which bodies take part.
+  // The criteria for active bodies.
   LayerMatrix matrix_;
   std::vector<std::uint8_t> present_;                           ///< by body: 1 if present
-  std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present, by layer
-  std::uint32_t active_layers_ = 0;   ///< bit by layer: a body that it collides with is present
-  NonCollidingLayers non_colliding_;  ///< empty where filtering does not pay
+  std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present bodies, by layer
+  std::uint32_t active_layers_ = 0;   ///< bit per layer: a possible partner is present
+  NonCollidingLayers non_colliding_;  ///< empty if filtering does not pay
   std::vector<std::uint32_t> non_colliding_bodies_;
   std::vector<std::uint32_t> colliding_bodies_;  ///< bodies that collide with non-colliding layers
-  std::optional<OccupancyBitmap> near_;          ///< of the colliding bodies
-  std::vector<std::uint32_t> appearing_;         ///< bodies that take part from this frame on
+  std::optional<OccupancyBitmap> occupancy_;     ///< of the colliding bodies
+  std::vector<std::uint32_t> activated_;         ///< bodies newly active in this frame
 
   std::optional<WorldLattice> worlds_;
-  std::vector<Aabb> boxes_;             ///< of the participating bodies, side by side, unordered
-  std::vector<Aabb> true_boxes_;        ///< the same, unmoved; empty if no box is moved
-  std::vector<std::uint32_t> bodies_;   ///< by index: the body's id
-  std::vector<std::uint32_t> places_;   ///< by body: its index, or kAbsent
-  std::vector<std::uint32_t> changed_;  ///< indices with changed boxes in this frame, ascending
-  std::vector<PairBuffer> pairs_;       ///< a buffer for each run of the algorithm's answer
+  std::vector<Aabb> boxes_;              ///< of the active bodies, unordered
+  std::vector<Aabb> true_boxes_;         ///< the same, untranslated; empty if no box is translated
+  std::vector<std::uint32_t> bodies_;    ///< body id, by index
+  std::vector<std::uint32_t> index_of_;  ///< index by body id; kAbsent: inactive
+  std::vector<std::uint32_t> changed_;   ///< indices with changed boxes in this frame, ascending
+  std::vector<PairBuffer> pairs_;        ///< one buffer per run of the algorithm's answer
   std::vector<PairRun> runs_;
 };
 

@@ -1,7 +1,7 @@
-// Events, for algorithms that report only the set of pairs of each frame.
+// Events for algorithms that report only the set of pairs of each frame.
 //
 // The pairs of a frame are radix-sorted and merged with the pairs of the frame before: a pair in
-// only one of the two lists has begun or ended. O(k), k the pairs, divided among the team's workers
+// only one of the two lists has begun or ended. O(k) for k pairs, divided among the team's workers
 // by the lower body. A steady state allocates nothing.
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace broadmark {
 namespace {
 
-/// Turns an algorithm's answers into events at the end of phase 4. Faults in an answer become
+/// Converts an algorithm's answers to events at the end of phase 4. Faults in an answer become
 /// events, too: a pair reported twice begins twice, an invalid pair begins in every frame.
 class EventsFromPairs final : public BroadPhase {
  public:
@@ -31,10 +31,10 @@ class EventsFromPairs final : public BroadPhase {
     team_ = &execution.team();
     bodies_ = first.boxes.size();
     body_bits_ = static_cast<int>(std::bit_width(bodies_));
-    parts_ = std::vector<WorkerPairs>(static_cast<std::size_t>(team_->size()));
-    for (WorkerPairs& part : parts_) part.found.resize(parts_.size());
-    began_.resize(parts_.size());
-    ended_.resize(parts_.size());
+    shares_ = std::vector<WorkerPairs>(static_cast<std::size_t>(team_->size()));
+    for (WorkerPairs& own : shares_) own.found.resize(shares_.size());
+    began_.resize(shares_.size());
+    ended_.resize(shares_.size());
     algorithm_->initialize(scene, first, execution);
     updateObjects(first);
     cleanCache();
@@ -47,15 +47,15 @@ class EventsFromPairs final : public BroadPhase {
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
     const PairRuns answer = algorithm_->overlaps();
-    team_->run([&](int worker) { shareOut(answer, static_cast<std::size_t>(worker)); });
+    team_->run([&](int worker) { distribute(answer, static_cast<std::size_t>(worker)); });
     team_->run([&](int worker) {
       gather(static_cast<std::size_t>(worker));
-      sort(parts_[static_cast<std::size_t>(worker)]);
-      compare(parts_[static_cast<std::size_t>(worker)]);
+      sort(shares_[static_cast<std::size_t>(worker)]);
+      compare(shares_[static_cast<std::size_t>(worker)]);
     });
-    for (std::size_t worker = 0; worker < parts_.size(); ++worker) {
-      began_[worker] = parts_[worker].began.run();
-      ended_[worker] = parts_[worker].ended.run();
+    for (std::size_t worker = 0; worker < shares_.size(); ++worker) {
+      began_[worker] = shares_[worker].began.run();
+      ended_[worker] = shares_[worker].ended.run();
     }
   }
   [[nodiscard]] PairRuns overlaps() const override { return algorithm_->overlaps(); }
@@ -73,7 +73,7 @@ class EventsFromPairs final : public BroadPhase {
  private:
   /// Pairs encoded as integers in the same order.
   using Keys = std::vector<std::uint64_t>;
-  /// A worker's share: the pairs that it owns.
+  /// The pairs owned by a worker.
   struct alignas(64) WorkerPairs {
     std::vector<Keys> found;  ///< in the worker's share of the answer, by owner
     Keys now;                 ///< ascending, once sorted
@@ -87,89 +87,89 @@ class EventsFromPairs final : public BroadPhase {
     return std::uint64_t{pair.a} << body_bits_ | pair.b;
   }
 
-  /// Blocks of bodies are dealt out in turn: low ids are the lower body of more pairs than high
+  /// Blocks of bodies are assigned round-robin: low ids are the lower body of more pairs than high
   /// ids.
   [[nodiscard]] std::size_t ownerOf(Pair pair) const {
     constexpr std::uint32_t kBlock = 64;
-    if (parts_.size() == 1) return 0;
-    return pair.a / kBlock % static_cast<std::uint32_t>(parts_.size());
+    if (shares_.size() == 1) return 0;
+    return pair.a / kBlock % static_cast<std::uint32_t>(shares_.size());
   }
 
-  void shareOut(PairRuns answer, std::size_t worker) {
-    WorkerPairs& part = parts_[worker];
-    for (Keys& found : part.found) found.clear();
-    part.began.clear();
-    part.ended.clear();
+  void distribute(PairRuns answer, std::size_t worker) {
+    WorkerPairs& own = shares_[worker];
+    for (Keys& found : own.found) found.clear();
+    own.began.clear();
+    own.ended.clear();
     auto [begin, end] =
-        share(pairCount(answer), static_cast<int>(parts_.size()), static_cast<int>(worker));
+        share(pairCount(answer), static_cast<int>(shares_.size()), static_cast<int>(worker));
     for (const PairRun chunk : answer) {
-      const std::size_t from = std::min(begin, chunk.size());
-      const std::size_t to = std::min(end, chunk.size());
-      for (const Pair pair : chunk.subspan(from, to - from)) {
+      const std::size_t first = std::min(begin, chunk.size());
+      const std::size_t last = std::min(end, chunk.size());
+      for (const Pair pair : chunk.subspan(first, last - first)) {
         if (pair.a < pair.b && pair.b < bodies_) [[likely]] {
-          part.found[ownerOf(pair)].push_back(keyOf(pair));
+          own.found[ownerOf(pair)].push_back(keyOf(pair));
         } else {
-          *part.began.room(1) = pair;  // keeps an invalid pair invalid
-          part.began.advance(1);
+          *own.began.room(1) = pair;  // keeps an invalid pair invalid
+          own.began.advance(1);
         }
       }
-      begin -= from;
-      end -= to;
+      begin -= first;
+      end -= last;
     }
   }
 
   void gather(std::size_t worker) {
-    WorkerPairs& part = parts_[worker];
-    part.now.swap(part.before);
-    part.now.clear();
-    for (const WorkerPairs& from : parts_) {
-      part.now.insert(part.now.end(), from.found[worker].begin(), from.found[worker].end());
+    WorkerPairs& own = shares_[worker];
+    own.now.swap(own.before);
+    own.now.clear();
+    for (const WorkerPairs& source : shares_) {
+      own.now.insert(own.now.end(), source.found[worker].begin(), source.found[worker].end());
     }
   }
 
-  void sort(WorkerPairs& part) const {
+  void sort(WorkerPairs& own) const {
     constexpr int kDigitBits = 11;
     constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
     constexpr std::size_t kMinForRadixSort = 512;  // below this a comparison sort is faster
-    if (part.now.size() < kMinForRadixSort) {
-      std::ranges::sort(part.now);
+    if (own.now.size() < kMinForRadixSort) {
+      std::ranges::sort(own.now);
       return;
     }
-    part.spare.resize(part.now.size());
+    own.spare.resize(own.now.size());
     for (int shift = 0; shift < 2 * body_bits_; shift += kDigitBits) {
       const auto digit = [shift](std::uint64_t key) { return key >> shift & (kDigits - 1); };
-      std::array<std::size_t, kDigits> places{};
-      for (const std::uint64_t key : part.now) ++places[digit(key)];
+      std::array<std::size_t, kDigits> offsets{};
+      for (const std::uint64_t key : own.now) ++offsets[digit(key)];
       std::size_t end = 0;
-      for (std::size_t& place : places) end += std::exchange(place, end);
-      for (const std::uint64_t key : part.now) part.spare[places[digit(key)]++] = key;
-      part.now.swap(part.spare);
+      for (std::size_t& offset : offsets) end += std::exchange(offset, end);
+      for (const std::uint64_t key : own.now) own.spare[offsets[digit(key)]++] = key;
+      own.now.swap(own.spare);
     }
   }
 
-  void compare(WorkerPairs& part) const {
+  void compare(WorkerPairs& own) const {
     const auto add = [this](std::uint64_t key, PairBuffer& pairs) {
       const std::uint64_t mask = (std::uint64_t{1} << body_bits_) - 1;
       pairs.add(static_cast<std::uint32_t>(key >> body_bits_),
                 static_cast<std::uint32_t>(key & mask));
     };
-    auto before = part.before.begin();
-    for (const std::uint64_t key : part.now) {
-      for (; before != part.before.end() && *before < key; ++before) add(*before, part.ended);
-      if (before != part.before.end() && *before == key) {
+    auto before = own.before.begin();
+    for (const std::uint64_t key : own.now) {
+      for (; before != own.before.end() && *before < key; ++before) add(*before, own.ended);
+      if (before != own.before.end() && *before == key) {
         ++before;
       } else {
-        add(key, part.began);
+        add(key, own.began);
       }
     }
-    for (; before != part.before.end(); ++before) add(*before, part.ended);
+    for (; before != own.before.end(); ++before) add(*before, own.ended);
   }
 
   std::unique_ptr<BroadPhase> algorithm_;
   ThreadTeam* team_ = nullptr;
   std::size_t bodies_ = 0;
   int body_bits_ = 0;  ///< bits per body id
-  std::vector<WorkerPairs> parts_;
+  std::vector<WorkerPairs> shares_;
   std::vector<PairRun> began_;
   std::vector<PairRun> ended_;
 };

@@ -54,7 +54,7 @@ class OccupancyBitmap {
     return ~std::uint64_t{0} >> (kCells - 1 - last) & ~std::uint64_t{0} << first;
   }
 
-  /// Calls visit(row) for the touched rows until it returns true; returns whether it did.
+  /// Calls visit(row) for the touched rows until a call returns true; returns whether one did.
   template <class Visit>
   bool forEachRow(const Aabb& box, Visit visit) {
     const std::size_t last_y = cellOf(box.max[1], 1);

@@ -1,11 +1,11 @@
-// Several worlds at one place, for algorithms that would mix their bodies up in one structure.
+// Several worlds at the same location, for algorithms that would mix their bodies in one structure.
 //
 // Each world has an independent instance of the algorithm: its bodies have contiguous indices, in
 // the order of their ids, and its collision filter has only layers and tags. A frame costs
-// O(changed bodies), the work of the instances with changes, and O(their pairs) to map these back
-// to body ids. The other worlds keep their answers.
+// O(changed bodies), the work of the instances with changes, and O(their pairs) to map pairs back
+// to body ids. Unchanged worlds retain their answers.
 //
-// An instance runs all of its phases while its world is in the caches: they count as phase 4, and
+// An instance runs all phases while its world is in the caches: all of them count as phase 4, and
 // the copying of boxes as phase 1. Running each phase over all worlds took up to 1.3 times as long
 // with many small worlds.
 
@@ -45,11 +45,11 @@ SceneInfo sceneOf(const SceneInfo& all, std::span<const std::uint32_t> bodies) {
 class Sums {
  public:
   void add(std::string_view name, std::uint64_t count) {
-    const auto known = std::ranges::find(sums_, name, &Sum::first);
-    if (known == sums_.end()) {
+    const auto entry = std::ranges::find(sums_, name, &Sum::first);
+    if (entry == sums_.end()) {
       sums_.emplace_back(name, count);
     } else {
-      known->second += count;
+      entry->second += count;
     }
   }
 
@@ -57,7 +57,7 @@ class Sums {
     return [this](std::string_view name, std::uint64_t count) { add(name, count); };
   }
 
-  void show(const CounterVisitor& visit) const {
+  void report(const CounterVisitor& visit) const {
     for (const auto& [name, sum] : sums_) visit(name, sum);
   }
 
@@ -66,22 +66,22 @@ class Sums {
   std::vector<Sum> sums_;
 };
 
-/// Wraps the instances. Each worker of a team gets a fixed share of the worlds; where the worlds
+/// Wraps the instances. Each worker of a team gets a fixed share of the worlds; if the worlds
 /// are fewer than the workers, they run sequentially, each on the whole team.
 class PerWorldBroadPhase final : public BroadPhase {
  public:
-  /// Makes the instances. With `concurrent`, instances may be called at the same time.
+  /// Creates the instances. With `concurrent`, instances may be called at the same time.
   PerWorldBroadPhase(const SceneInfo& scene, const InstanceMaker& make, bool concurrent)
       : concurrent_(concurrent) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> bodies_of;
     for (std::uint32_t body = 0; body < scene.objects; ++body) {
       bodies_of[scene.filter.worlds()[body]].push_back(body);
     }
-    places_.assign(scene.objects, {kNoBody, 0});
+    locations_.assign(scene.objects, {kNoBody, 0});
     for (auto& [number, bodies] : bodies_of) {
       if (bodies.size() < 2) continue;  // no pairs are possible
       for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-        places_[bodies[i]] = {static_cast<std::uint32_t>(worlds_.size()), i};
+        locations_[bodies[i]] = {static_cast<std::uint32_t>(worlds_.size()), i};
       }
       World& world = worlds_.emplace_back();
       world.number = number;
@@ -96,7 +96,7 @@ class PerWorldBroadPhase final : public BroadPhase {
   }
 
   void initialize(const SceneInfo&, const Frame& first, ExecutionContext& execution) override {
-    shareOut(execution);
+    assignWorlds(execution);
     active_.resize(worlds_.size());
     std::iota(active_.begin(), active_.end(), 0U);
     runs_.resize(worlds_.size());
@@ -107,7 +107,7 @@ class PerWorldBroadPhase final : public BroadPhase {
       for (const std::uint32_t body : world.bodies) world.boxes.push_back(first.boxes[body]);
       world.changed.reserve(world.bodies.size());
       world.instance->initialize(world.scene, world.frame(), *world.execution);
-      if (reports_events_) world.takeEvents();
+      if (reports_events_) world.storeEvents();
     });
     if (reports_events_) gatherEvents();
   }
@@ -116,12 +116,12 @@ class PerWorldBroadPhase final : public BroadPhase {
     const bool is_first = std::exchange(is_first_, false);
     if (!is_first) active_.clear();
     for (const std::uint32_t body : *frame.changed) {
-      const BodyLocation place = places_[body];
-      if (place.world == kNoBody) continue;
-      World& world = worlds_[place.world];
-      if (world.changed.empty() && !is_first) active_.push_back(place.world);
-      world.changed.push_back(place.body);
-      world.boxes[place.body] = frame.boxes[body];
+      const BodyLocation location = locations_[body];
+      if (location.world == kNoBody) continue;
+      World& world = worlds_[location.world];
+      if (world.changed.empty() && !is_first) active_.push_back(location.world);
+      world.changed.push_back(location.body);
+      world.boxes[location.body] = frame.boxes[body];
     }
   }
 
@@ -134,9 +134,9 @@ class PerWorldBroadPhase final : public BroadPhase {
       world.instance->updateStructures();
       world.instance->searchOverlaps();
       if (reports_events_) {
-        world.takeEvents();
+        world.storeEvents();
       } else {
-        world.translate(world.instance->overlaps(), world.pairs);
+        world.mapToBodies(world.instance->overlaps(), world.pairs);
       }
     });
     if (reports_events_) {
@@ -163,32 +163,32 @@ class PerWorldBroadPhase final : public BroadPhase {
 
   void drawStructure(DebugDraw& draw) const override {
     for (const World& world : worlds_) {
-      RemappingDebugDraw renamed(draw, world.bodies);
-      world.instance->drawStructure(renamed);
+      RemappingDebugDraw remapped(draw, world.bodies);
+      world.instance->drawStructure(remapped);
     }
   }
 
-  /// Sums over the worlds in which something changed.
+  /// Sums over the worlds with changes.
   void visitCounters(const CounterVisitor& visit) const override {
     Sums sums;
     sums.add("worlds with changes", active_.size());
     for (const std::uint32_t world : active_) {
       worlds_[world].instance->visitCounters(sums.adder());
     }
-    sums.show(visit);
+    sums.report(visit);
   }
 
   /// Sums over all worlds.
   void visitSetup(const CounterVisitor& visit) const override {
     Sums sums;
     for (const World& world : worlds_) world.instance->visitSetup(sums.adder());
-    sums.show(visit);
+    sums.report(visit);
   }
 
   [[nodiscard]] std::string validate() const override {
     for (const World& world : worlds_) {
-      const std::string broken = world.instance->validate();
-      if (!broken.empty()) return fmt::format("world {}: {}", world.number, broken);
+      const std::string violation = world.instance->validate();
+      if (!violation.empty()) return fmt::format("world {}: {}", world.number, violation);
     }
     return {};
   }
@@ -201,7 +201,7 @@ class PerWorldBroadPhase final : public BroadPhase {
     SceneInfo scene;
     std::unique_ptr<BroadPhase> instance;
     ExecutionContext* execution = nullptr;
-    std::uint32_t index = 0;  ///< of the instance's last frame: only frames with changes count
+    std::uint32_t index = 0;  ///< the instance's last frame; frames without changes do not count
     std::vector<Aabb> boxes;
     std::vector<std::uint32_t> changed;  ///< indices into `bodies`, ascending
     std::vector<Pair> pairs;             ///< by body id
@@ -209,7 +209,7 @@ class PerWorldBroadPhase final : public BroadPhase {
     std::vector<Pair> ended;
 
     [[nodiscard]] Frame frame() const { return {index, boxes, changed}; }
-    void translate(PairRuns found, std::vector<Pair>& into) const {
+    void mapToBodies(PairRuns found, std::vector<Pair>& into) const {
       into.resize(pairCount(found));
       auto next = into.begin();
       for (const PairRun chunk : found) {
@@ -220,10 +220,10 @@ class PerWorldBroadPhase final : public BroadPhase {
         }
       }
     }
-    void takeEvents() {
+    void storeEvents() {
       const PairEvents events = instance->events();
-      translate(events.began, began);
-      translate(events.ended, ended);
+      mapToBodies(events.began, began);
+      mapToBodies(events.ended, ended);
     }
   };
   /// A body's world and its index there.
@@ -248,7 +248,7 @@ class PerWorldBroadPhase final : public BroadPhase {
   }
 
   /// Assigns the worlds to workers, permanently: a worker finds its worlds in its caches.
-  void shareOut(ExecutionContext& execution) {
+  void assignWorlds(ExecutionContext& execution) {
     const auto workers = static_cast<std::size_t>(execution.threads());
     if (concurrent_ && workers > 1 && worlds_.size() >= workers) {
       team_ = &execution.team();
@@ -271,14 +271,14 @@ class PerWorldBroadPhase final : public BroadPhase {
     }
   }
 
-  ThreadTeam* team_ = nullptr;  ///< null unless worlds are divided among workers
-  std::vector<std::unique_ptr<ExecutionContext>> executions_;  ///< one per worker, if team_ is set
-  std::vector<World> worlds_;         ///< with two bodies or more, by number
-  std::vector<BodyLocation> places_;  ///< by body
+  ThreadTeam* team_ = nullptr;  ///< null unless workers share the worlds
+  std::vector<std::unique_ptr<ExecutionContext>> executions_;  ///< one per worker if team_ is set
+  std::vector<World> worlds_;            ///< worlds with at least two bodies, by number
+  std::vector<BodyLocation> locations_;  ///< by body
   bool concurrent_;
   bool reports_events_ = false;
   std::vector<std::uint32_t> active_;  ///< the worlds with changes in this frame
-  bool is_first_ = true;               ///< no frame was run: there are no answers to keep
+  bool is_first_ = true;               ///< no frame has run yet
   std::vector<PairRun> runs_;          ///< by world
   std::vector<PairRun> began_;         ///< by active world
   std::vector<PairRun> ended_;

@@ -1,4 +1,4 @@
-// Maps an algorithm's body indices in a drawing back to the scene's.
+// Maps body indices in an algorithm's drawing back to the scene's.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Worlds at the same place put side by side, for algorithms that handle only boxes.
+// Lays out overlapping worlds side by side, for algorithms that handle only boxes.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace broadmark {
 
 /// Translates the boxes of each world to a separate cell of a lattice; a cell is as large as the
-/// scene's world. Boxes that overlap still do: rounding is monotone. Other boxes may come to
-/// overlap, among them those of bodies of two worlds that poke out.
+/// scene's world. Overlapping boxes still overlap, since rounding is monotone. Translation may add
+/// overlaps, also between bodies that protrude from two worlds.
 class WorldLattice {
  public:
-  /// The lattice is a cube of worlds, or as near to a cube as their number allows.
+  /// Makes the lattice as close to a cube as the number of worlds allows.
   explicit WorldLattice(const SceneInfo& scene) : world_(scene.world) {
     const std::span<const std::uint32_t> worlds = scene.filter.worlds();
     std::vector<std::uint32_t> present(worlds.begin(), worlds.end());
@@ -37,11 +37,11 @@ class WorldLattice {
 
     world_ = all;
     for (std::size_t number = 0; number < present.size(); ++number) {
-      const std::array<std::size_t, 3> place = {number % per_axis, number / per_axis % per_axis,
-                                                number / per_axis / per_axis};
+      const std::array<std::size_t, 3> cell = {number % per_axis, number / per_axis % per_axis,
+                                               number / per_axis / per_axis};
       std::array<float, 3>& offset = offsets_.emplace_back();
       for (int axis = 0; axis < 3; ++axis) {
-        offset[axis] = step[axis] * static_cast<float>(place[axis]);
+        offset[axis] = step[axis] * static_cast<float>(cell[axis]);
       }
     }
     for (const std::uint32_t world : worlds) {
@@ -50,9 +50,9 @@ class WorldLattice {
     }
   }
 
-  /// False for one world, or worlds too large to be moved.
-  [[nodiscard]] bool moves() const { return !offsets_.empty(); }
-  [[nodiscard]] Aabb moved(std::uint32_t body, Aabb box) const {
+  /// False for a single world, and for worlds too large to be translated.
+  [[nodiscard]] bool translates() const { return !offsets_.empty(); }
+  [[nodiscard]] Aabb translated(std::uint32_t body, Aabb box) const {
     const std::array<float, 3>& offset = offsets_[numbers_[body]];
     for (int axis = 0; axis < 3; ++axis) {
       box.min[axis] += offset[axis];
@@ -60,17 +60,17 @@ class WorldLattice {
     }
     return box;
   }
-  /// The bounds of all worlds: the scene's own if no world moves.
+  /// The bounds of all worlds: the scene's own without translation.
   [[nodiscard]] const Aabb& world() const { return world_; }
 
  private:
-  /// Distance between worlds, in extents of a world: bodies may poke out a little.
+  /// Distance between worlds, in extents of a world: bodies may protrude a little.
   static constexpr float kSpacing = 1.25F;
 
-  /// The offset of a box within this does not overflow.
+  /// The maximum coordinate of the lattice: no translated box overflows.
   static constexpr float kMaxExtent = 1e30F;
 
-  std::vector<std::uint32_t> numbers_;  ///< by body: its world, numbered without gaps
+  std::vector<std::uint32_t> numbers_;  ///< by body: the index of its world
   std::vector<std::array<float, 3>> offsets_;
   Aabb world_;
 };

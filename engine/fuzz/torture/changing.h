@@ -1,4 +1,4 @@
-// Changes of a world beside its boxes: presence of bodies, and collision filters.
+// Changes of a world besides its boxes: presence of bodies, and collision filters.
 #pragma once
 
 #include <array>
@@ -27,11 +27,11 @@ inline bool random(std::uint32_t body, std::uint32_t frame) {
 }
 /// One body in fifty is absent in each frame.
 inline bool seldom(std::uint32_t body, std::uint32_t frame) { return (body + frame) % 50 != 0; }
-/// All vanish at once, and come back.
+/// All bodies vanish at once, and reappear.
 inline bool allOrNone(std::uint32_t, std::uint32_t frame) { return frame % 3 != 2; }
-/// A growing number.
+/// A growing number of bodies.
 inline bool growing(std::uint32_t body, std::uint32_t frame) { return body < 7 * frame; }
-/// A decreasing number.
+/// A decreasing number of bodies.
 inline bool shrinking(std::uint32_t body, std::uint32_t frame) { return body % (frame + 1) == 0; }
 
 }  // namespace presences
@@ -50,7 +50,7 @@ inline constexpr std::array kPresences = {
     NamedPresence{"shrinking", presences::shrinking},
 };
 
-/// Generates a body's groups.
+/// Generates a body's filter groups.
 using Grouping = std::function<BodyGroups(Random& random, std::uint32_t body)>;
 
 /// The default seed is n.
@@ -69,22 +69,22 @@ struct NamedFilter {
 
 /// Filters of n bodies, each kind separately and all combined.
 inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64_t> seed = {}) {
-  const auto of = [=](const LayerMatrix& matrix, const Grouping& grouping) {
+  const auto make = [=](const LayerMatrix& matrix, const Grouping& grouping) {
     return filterOf(n, matrix, grouping, seed);
   };
-  const auto number = [](Random& random, int most) {
-    return static_cast<std::uint32_t>(random.integer(0, most));
+  const auto number = [](Random& random, int max) {
+    return static_cast<std::uint32_t>(random.integer(0, max));
   };
-  const auto layer = [=](Random& random, int most) {
-    return static_cast<std::uint8_t>(number(random, most));
+  const auto layer = [=](Random& random, int max) {
+    return static_cast<std::uint8_t>(number(random, max));
   };
-  LayerMatrix some;
+  LayerMatrix mixed;
   Random random(1, 1);
   for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) some.set(a, b, random.integer(0, 1) == 0);
+    for (std::size_t b = 0; b <= a; ++b) mixed.set(a, b, random.integer(0, 1) == 0);
   }
   // Layer 0: fixtures, layer 1: bodies that collide with all, layer 2: triggers, only with layer 1.
-  const LayerMatrix usual = LayerMatrix().set(0, 1).set(1, 1).set(2, 1);
+  const LayerMatrix triggers = LayerMatrix().set(0, 1).set(1, 1).set(2, 1);
   const LayerMatrix one_layer = LayerMatrix().set(0, 0);
   // Layer 0: a level, layer 1: bodies in it.
   const LayerMatrix level = LayerMatrix().set(0, 1).set(1, 1);
@@ -96,27 +96,27 @@ inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64
   return {
       {"all wanted", {}},
       {"fixtures and triggers",
-       of(usual, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 2)}; })},
-      {"a level and a few bodies", of(level,
-                                      [=](Random& r, std::uint32_t) {
-                                        const bool is_level = r.integer(0, 9) > 0;
-                                        return BodyGroups{.layer = std::uint8_t{!is_level}};
-                                      })},
+       make(triggers, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 2)}; })},
+      {"a level and a few bodies", make(level,
+                                        [=](Random& r, std::uint32_t) {
+                                          const bool is_level = r.integer(0, 9) > 0;
+                                          return BodyGroups{.layer = std::uint8_t{!is_level}};
+                                        })},
       {"32 layers",
-       of(some, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
+       make(mixed, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
       {"full matrix",
-       of(LayerMatrix::all(),
-          [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
-      {"no pair wanted", of(LayerMatrix(), [](Random&, std::uint32_t) { return BodyGroups{}; })},
-      {"worlds",
-       of(one_layer, [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
+       make(LayerMatrix::all(),
+            [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
+      {"no pair wanted", make(LayerMatrix(), [](Random&, std::uint32_t) { return BodyGroups{}; })},
+      {"worlds", make(one_layer,
+                      [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
       {"a world each",
-       of(one_layer, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
-      {"tags", of(one_layer,
-                  [=](Random& r, std::uint32_t) {
-                    return BodyGroups{.tags = {number(r, 30), number(r, 30), number(r, 30)}};
-                  })},
-      {"all at once", of(some, any)},
+       make(one_layer, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
+      {"tags", make(one_layer,
+                    [=](Random& r, std::uint32_t) {
+                      return BodyGroups{.tags = {number(r, 30), number(r, 30), number(r, 30)}};
+                    })},
+      {"all at once", make(mixed, any)},
   };
 }
 

@@ -34,7 +34,7 @@ class Random {
   float uniform(float low, float high) {
     return low + (high - low) * static_cast<float>(static_cast<double>(bits_() >> 11) * 0x1p-53);
   }
-  int integer(int low, int high) {  // both inclusive
+  int integer(int low, int high) {  // inclusive
     return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1));
   }
   /// True with probability 1 / `times`.
@@ -186,13 +186,13 @@ inline std::vector<Aabb> still(std::size_t n, std::uint32_t, std::uint64_t seed)
 /// Most boxes drift, one in twenty jumps.
 inline std::vector<Aabb> drifting(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   std::vector<Aabb> boxes = assorted(n, 0, seed);
-  const std::vector<Aabb> elsewhere = assorted(n, frame, seed);
+  const std::vector<Aabb> jumped = assorted(n, frame, seed);
   for (std::size_t i = 0; i < n; ++i) {
-    if ((i + frame) % 20 == 0) boxes[i] = elsewhere[i];
-    const float way = static_cast<float>(frame) * (i % 2 == 0 ? 0.05F : -0.02F);
+    if ((i + frame) % 20 == 0) boxes[i] = jumped[i];
+    const float shift = static_cast<float>(frame) * (i % 2 == 0 ? 0.05F : -0.02F);
     for (int axis = 0; axis < 3; ++axis) {
-      boxes[i].min[axis] += way;
-      boxes[i].max[axis] += way;
+      boxes[i].min[axis] += shift;
+      boxes[i].max[axis] += shift;
     }
   }
   return boxes;
@@ -201,15 +201,15 @@ inline std::vector<Aabb> drifting(std::size_t n, std::uint32_t frame, std::uint6
 /// All boxes jump every frame.
 inline std::vector<Aabb> teleporting(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   std::vector<Aabb> boxes = clustered(n, frame, seed);
-  const float away = 1000 * static_cast<float>(frame % 2);
+  const float shift = 1000 * static_cast<float>(frame % 2);
   for (Aabb& box : boxes) {
-    box.min[frame % 3] += away;
-    box.max[frame % 3] += away;
+    box.min[frame % 3] += shift;
+    box.max[frame % 3] += shift;
   }
   return boxes;
 }
 
-/// From points to boxes that all overlap.
+/// Boxes that grow from points until all overlap.
 inline std::vector<Aabb> growing(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   std::vector<Aabb> boxes = uniform(n, 0, seed);
   for (Aabb& box : boxes) {
@@ -246,8 +246,8 @@ inline std::vector<Aabb> rodsAndPlates(std::size_t n, std::uint32_t frame, std::
   constexpr std::array kEdges = {0.05F, 0.2F, 1.0F, 5.0F};
   constexpr std::size_t kCluster = 97;  // bodies
   const float side = cubeRoot(10.0 * static_cast<double>(n));
-  const auto any = [](Random& random, const auto& of) {
-    return of[static_cast<std::size_t>(random.integer(0, 3))];
+  const auto any_of = [](Random& random, const auto& list) {
+    return list[static_cast<std::size_t>(random.integer(0, 3))];
   };
   Vec3 corner{};
   Vec3 extent{};
@@ -257,13 +257,14 @@ inline std::vector<Aabb> rodsAndPlates(std::size_t n, std::uint32_t frame, std::
     if (i % kCluster == 1) {
       corner = random.inCube(side);
       for (int axis = 0; axis < 3; ++axis) {
-        extent[axis] = any(random, kExtents);
-        edges[axis] = any(random, kEdges);
+        extent[axis] = any_of(random, kExtents);
+        edges[axis] = any_of(random, kEdges);
       }
     }
-    Vec3 place = random.inCube(1);
-    for (int axis = 0; axis < 3; ++axis) place[axis] = corner[axis] + place[axis] * extent[axis];
-    return boxAt(place, edges);
+    Vec3 position = random.inCube(1);
+    for (int axis = 0; axis < 3; ++axis)
+      position[axis] = corner[axis] + position[axis] * extent[axis];
+    return boxAt(position, edges);
   });
 }
 
@@ -284,7 +285,7 @@ inline std::vector<Aabb> limits(std::size_t n, std::uint32_t frame, std::uint64_
   });
 }
 
-/// Normal, easy and difficult inputs. Without `limits`: see there.
+/// Normal, easy and difficult inputs, without `limits`.
 inline constexpr std::array kAll = {
     Input{"uniform", uniform},     Input{"assorted", assorted},
     Input{"touching", touching},   Input{"identical", identical, true},

@@ -13,17 +13,17 @@ namespace {
 using inputs::Random;
 
 constexpr const char* kGiven = "given";
-/// Each frame by another generator.
+/// Each frame has a random generator.
 constexpr const char* kUnrelated = "unrelated frames";
 
 /// Mostly small: most faults with many bodies also occur with few.
 std::size_t randomCount(Random& random, bool all_overlap) {
   const int size = random.integer(1, 20);
-  int most = 64;
-  if (size == 1) most = 3;
-  if (size > 14) most = 300;
-  if (size == 20 && !all_overlap) most = 1000;
-  return static_cast<std::size_t>(random.integer(0, all_overlap ? std::min(most, 100) : most));
+  int max = 64;
+  if (size == 1) max = 3;
+  if (size > 14) max = 300;
+  if (size == 20 && !all_overlap) max = 1000;
+  return static_cast<std::size_t>(random.integer(0, all_overlap ? std::min(max, 100) : max));
 }
 
 std::uint32_t randomFrameCount(Random& random) {
@@ -31,18 +31,18 @@ std::uint32_t randomFrameCount(Random& random) {
 }
 
 /// Removes absent bodies from the frames.
-void keepPresent(std::vector<std::vector<Aabb>>& frames, Random& random) {
+void removeAbsent(std::vector<std::vector<Aabb>>& frames, Random& random) {
   const inputs::NamedPresence& presence = random.anyOf(inputs::kPresences);
-  // Each world begins at a random frame of the presence pattern.
-  const auto later = static_cast<std::uint32_t>(random.integer(0, 20));
+  // Each world starts at a random frame of the presence pattern.
+  const auto phase = static_cast<std::uint32_t>(random.integer(0, 20));
   for (std::uint32_t frame = 0; frame < frames.size(); ++frame) {
     for (std::uint32_t body = 0; body < frames[frame].size(); ++body) {
-      if (!presence.present(body, frame + later)) frames[frame][body] = kEmptyBox;
+      if (!presence.present(body, frame + phase)) frames[frame][body] = kEmptyBox;
     }
   }
 }
 
-RandomWorld madeUp(Random& random) {
+RandomWorld generatedWorld(Random& random) {
   const bool is_unrelated = random.onceIn(20);
   const inputs::Input kind = random.anyOf(inputs::kAll);
   const std::size_t n = randomCount(random, kind.all_overlap || is_unrelated);
@@ -50,31 +50,31 @@ RandomWorld madeUp(Random& random) {
   const auto seed = static_cast<std::uint64_t>(random.integer(0, 1'000'000'000));
   std::vector<std::vector<Aabb>> frames;
   for (std::uint32_t frame = 0; frame <= count; ++frame) {
-    const inputs::Input& now = is_unrelated ? random.anyOf(inputs::kAll) : kind;
-    frames.push_back(now.boxes(n, frame, seed));
+    const inputs::Input& input = is_unrelated ? random.anyOf(inputs::kAll) : kind;
+    frames.push_back(input.boxes(n, frame, seed));
   }
   SceneInfo scene = inputs::sceneOf(frames);
-  if (random.onceIn(8)) scene.world = {{0, 0, 0, 0}, {1, 1, 1, 0}};  // bodies may poke out
+  if (random.onceIn(8)) scene.world = {{0, 0, 0, 0}, {1, 1, 1, 0}};  // bodies may protrude
   if (random.onceIn(3)) {
     scene.all_present = false;
-    keepPresent(frames, random);
+    removeAbsent(frames, random);
   }
   if (random.onceIn(3)) scene.filter = random.anyOf(inputs::filters(n, seed)).filter;
   return {is_unrelated ? kUnrelated : std::string(kind.name),
           std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames))};
 }
 
-/// Up to `most` consecutive integers below `count`, from a random one on.
-std::vector<std::uint32_t> randomRow(Random& random, std::uint32_t count, std::uint32_t most) {
-  std::vector<std::uint32_t> row(std::min(count, most));
-  const auto first = random.integer(0, static_cast<int>(count - row.size()));
-  std::iota(row.begin(), row.end(), static_cast<std::uint32_t>(first));
-  return row;
+/// Up to `max` consecutive integers below `count`, from a random start.
+std::vector<std::uint32_t> randomRange(Random& random, std::uint32_t count, std::uint32_t max) {
+  std::vector<std::uint32_t> range(std::min(count, max));
+  const auto first = random.integer(0, static_cast<int>(count - range.size()));
+  std::iota(range.begin(), range.end(), static_cast<std::uint32_t>(first));
+  return range;
 }
 
-/// The given bodies in this order, in the given frames.
+/// The given bodies, in this order, and frames.
 template <class BoxesOf>
-std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
+std::unique_ptr<IndexedFrames> subset(SceneInfo scene, BoxesOf boxes_of,
                                       const std::vector<std::uint32_t>& bodies,
                                       const std::vector<std::uint32_t>& frames) {
   std::vector<std::vector<Aabb>> all;
@@ -88,13 +88,13 @@ std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
 }
 
 /// All of a small recording; else some consecutive bodies, in some frames.
-RandomWorld partOf(const TortureRecording& given, Random& random) {
+RandomWorld excerptOf(const TortureRecording& given, Random& random) {
   constexpr std::uint32_t kMaxBodies = 1000;
   constexpr std::uint32_t kMaxFrames = 31;
-  const std::vector<std::uint32_t> bodies = randomRow(random, given.scene.objects, kMaxBodies);
-  const std::vector<std::uint32_t> frames = randomRow(random, given.scene.frames + 1, kMaxFrames);
+  const std::vector<std::uint32_t> bodies = randomRange(random, given.scene.objects, kMaxBodies);
+  const std::vector<std::uint32_t> frames = randomRange(random, given.scene.frames + 1, kMaxFrames);
   const auto boxes_of = [&](std::uint32_t frame) { return std::span(given.frames[frame]); };
-  return {kGiven, picked(given.scene, boxes_of, bodies, frames)};
+  return {kGiven, subset(given.scene, boxes_of, bodies, frames)};
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ std::vector<std::string> tortureWorlds() {
 
 RandomWorld randomWorld(Random& random, const TortureOptions& options) {
   const bool is_given = options.only_given || (!options.given.empty() && random.onceIn(10));
-  return is_given ? partOf(random.anyOf(options.given), random) : madeUp(random);
+  return is_given ? excerptOf(random.anyOf(options.given), random) : generatedWorld(random);
 }
 
 std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {
@@ -121,7 +121,7 @@ std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {
   }
   std::vector<std::uint32_t> all(scene.frames + 1);
   std::iota(all.begin(), all.end(), 0U);
-  return picked(
+  return subset(
       scene, [&](std::uint32_t frame) { return frames.at(frame).boxes; }, order, all);
 }
 

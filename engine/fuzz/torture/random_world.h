@@ -17,7 +17,7 @@ struct RandomWorld {
 /// A small world, with at least one frame after the initial pose.
 RandomWorld randomWorld(inputs::Random& random, const TortureOptions& options);
 
-/// The same with the bodies in another order.
+/// The same world with the bodies in random order.
 std::unique_ptr<IndexedFrames> shuffled(inputs::Random& random, IndexedFrames& frames);
 
 }  // namespace broadmark

@@ -18,34 +18,34 @@ using inputs::Random;
 /// Worlds per round: enough to amortise the start of a process.
 constexpr int kWorlds = 40;
 
-/// Log-uniform above `min`.
-double between(Random& random, double min, double max) {
-  const int side = random.integer(0, 9);
-  if (side == 0) return min;
-  if (side == 1) return max;
+/// Log-uniform above `min`; sometimes one of the limits.
+double randomValue(Random& random, double min, double max) {
+  const int choice = random.integer(0, 9);
+  if (choice == 0) return min;
+  if (choice == 1) return max;
   const double share = static_cast<double>(random.uniform(0, 1));
   return std::min(max, min + std::expm1(share * std::log1p(max - min)));
 }
 
-void setAnyhow(Random& random, const Parameter& parameter) {
+void randomize(Random& random, const Parameter& parameter) {
   if (const auto* value = std::get_if<bool*>(&parameter.value)) **value = random.onceIn(2);
   if (const auto* value = std::get_if<std::int64_t*>(&parameter.value)) {
-    **value = static_cast<std::int64_t>(between(random, parameter.min, parameter.max));
+    **value = static_cast<std::int64_t>(randomValue(random, parameter.min, parameter.max));
   }
   if (const auto* value = std::get_if<double*>(&parameter.value)) {
-    **value = between(random, parameter.min, parameter.max);
+    **value = randomValue(random, parameter.min, parameter.max);
   }
   if (const auto* value = std::get_if<Choice*>(&parameter.value)) {
     (*value)->value = random.anyOf((*value)->options);
   }
 }
 
-/// Half of the time the defaults.
+/// The defaults half of the time.
 ParameterValues randomParameters(Random& random, const Algorithm& algorithm) {
   if (random.onceIn(2)) return {};
   const std::unique_ptr<BroadPhase> instance = algorithm.create();
   instance->visitParameters([&](const Parameter& parameter) {
-    if (random.onceIn(2)) setAnyhow(random, parameter);
+    if (random.onceIn(2)) randomize(random, parameter);
   });
   return changedValues(parameterValues(*instance), *algorithm.create());
 }
@@ -66,7 +66,7 @@ class Round {
         random_(options.seed, static_cast<std::uint32_t>(number)),
         case_(options.only_case ? *options.only_case : randomCase(random_, options.algorithms)),
         is_exact_(makeInstance(case_)->margin() == 0),
-        trial_(case_, options.make_host, options.cancelled) {}
+        trial_(case_, options.make_executor, options.cancelled) {}
 
   TortureRound run() {
     TortureRound round;
@@ -74,35 +74,36 @@ class Round {
     for (int i = 0; i < kWorlds; ++i) {
       world = randomWorld(random_, options_);
       const std::optional<Fault> fault = runOnce(world, round.coverage);
-      if (fault) return finished(std::move(round), std::move(world), *fault);
+      if (fault) return makeFinding(std::move(round), std::move(world), *fault);
     }
     const std::optional<Fault> fault = leak(*world.frames);
-    if (fault) return finished(std::move(round), std::move(world), *fault);
+    if (fault) return makeFinding(std::move(round), std::move(world), *fault);
     return round;
   }
 
  private:
-  /// A leak that is also reproducible in a new process: caches of malloc and libraries vary.
+  /// Detects a leak that is reproducible in a new process: caches of malloc and libraries vary.
   std::optional<Fault> leak(IndexedFrames& world) {
     const AlgorithmTraits& traits = case_.algorithm.traits;
     if (traits.library_leaks || traits.on_device || !trial_.leak(world)) return std::nullopt;
-    return Trial(case_, options_.make_host, options_.cancelled).leak(world);
+    return Trial(case_, options_.make_executor, options_.cancelled).leak(world);
   }
 
-  /// Repeats some worlds.
+  /// Runs a world, and repeats some of them.
   std::optional<Fault> runOnce(RandomWorld& world, TortureCoverage& coverage) {
-    constexpr int kSeldom = 8;
+    constexpr int kRepeatInterval = 8;
     // Exact answers must be equal both times.
     std::vector<PairDigest> first;
     std::vector<PairDigest> second;
     if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &first)) return fault;
     if (!trial_.supported()) return std::nullopt;
     count(world, coverage);
-    if (random_.onceIn(kSeldom)) {
+    if (random_.onceIn(kRepeatInterval)) {
       if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &second)) return fault;
-      if (first != second) return Fault{FaultKind::unsteady, 0, "another answer the second time"};
+      if (first != second)
+        return Fault{FaultKind::nondeterministic, 0, "a different answer on the second pass"};
     }
-    if (random_.onceIn(kSeldom)) {
+    if (random_.onceIn(kRepeatInterval)) {
       world.frames = shuffled(random_, *world.frames);
       return trial_.run(*world.frames);
     }
@@ -119,7 +120,7 @@ class Round {
          .filtered = scene.filter.wantsAll() ? 0 : scene.frames};
   }
 
-  TortureRound finished(TortureRound round, RandomWorld world, const Fault& fault) {
+  TortureRound makeFinding(TortureRound round, RandomWorld world, const Fault& fault) {
     round.finding = TortureFinding{.test_case = case_,
                                    .world = world.name,
                                    .fault = fault,
@@ -129,8 +130,8 @@ class Round {
     return round;
   }
 
-  /// The fault, if these frames reproduce it in their last frame.
-  std::optional<Fault> again(Trial& trial, IndexedFrames& frames, FaultKind kind) const {
+  /// Returns the fault if these frames reproduce it in their last frame.
+  std::optional<Fault> reproduce(Trial& trial, IndexedFrames& frames, FaultKind kind) const {
     auto fault = kind == FaultKind::leak ? trial.leak(frames) : trial.run(frames);
     if (!fault || fault->kind != kind) return std::nullopt;
     // A fault of the initial pose is reported as frame 1, as every recording has one.
@@ -138,37 +139,38 @@ class Round {
     return fault;
   }
 
-  /// In a new process, to exclude effects of earlier worlds.
+  /// Shrinks a fault, in a new process to exclude effects of earlier worlds.
   void shrink(TortureFinding& finding) const {
-    const std::uint32_t last = finding.fault.kind == FaultKind::unsteady
+    const std::uint32_t last = finding.fault.kind == FaultKind::nondeterministic
                                    ? finding.frames->scene().frames
                                    : std::max(finding.fault.frame, 1U);
-    finding.part = wholePart(finding.frames->scene(), last);
-    if (finding.fault.kind == FaultKind::unsteady || !isNews(finding.fault.kind)) return;
-    Trial trial(case_, options_.make_host, options_.cancelled);
+    finding.part = selectAll(finding.frames->scene(), last);
+    if (finding.fault.kind == FaultKind::nondeterministic || !isWorthShrinking(finding.fault.kind))
+      return;
+    Trial trial(case_, options_.make_executor, options_.cancelled);
     const FaultKind kind = finding.fault.kind;
     const auto fails = [&](IndexedFrames& part) {
-      const std::optional<Fault> fault = again(trial, part, kind);
+      const std::optional<Fault> fault = reproduce(trial, part, kind);
       if (fault) finding.fault = *fault;
       return fault.has_value();
     };
     const auto suspects = [&] { return finding.fault.suspects; };
-    const ShrinkOptions limits{.progress = {}, .cancelled = untilTimeIsUp()};
+    const ShrinkOptions limits{.progress = {}, .cancelled = deadlineQuery()};
     try {
       const ShrunkPart shrunk = shrinkPart(*finding.frames, last, suspects, fails, limits);
       finding.part = shrunk.part;
       finding.minimal = shrunk.minimal;
     } catch (const InputError&) {  // not reproducible
-      finding.fault.text += ", but not when it was run again";
-      finding.fault.kind = FaultKind::unsteady;
+      finding.fault.text += ", but not when rerun";
+      finding.fault.kind = FaultKind::nondeterministic;
     }
   }
 
-  [[nodiscard]] bool isNews(FaultKind kind) const {
+  [[nodiscard]] bool isWorthShrinking(FaultKind kind) const {
     return !options_.is_news || options_.is_news(case_.algorithm.id, kind);
   }
 
-  [[nodiscard]] CancelQuery untilTimeIsUp() const {
+  [[nodiscard]] CancelQuery deadlineQuery() const {
     const auto end = std::chrono::steady_clock::now() +
                      std::chrono::duration<double>(options_.max_shrink_seconds);
     return [this, end] {

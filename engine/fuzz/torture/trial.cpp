@@ -7,13 +7,13 @@
 
 namespace broadmark {
 
-Trial::Trial(Case test_case, const ExecutorFactory& make_host, const CancelQuery& cancelled)
-    : case_(std::move(test_case)), make_host_(make_host), cancelled_(cancelled) {}
+Trial::Trial(Case test_case, const ExecutorFactory& make_executor, const CancelQuery& cancelled)
+    : case_(std::move(test_case)), make_executor_(make_executor), cancelled_(cancelled) {}
 
 std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* answers) {
   supported_ = true;
   if (!run_) {
-    run_.emplace(case_, RunPolicy::unlimited(CheckMode::hash), make_host_, cancelled_);
+    run_.emplace(case_, RunPolicy::unlimited(CheckMode::hash), make_executor_, cancelled_);
   }
   std::optional<Fault> fault = runFrames(world, answers);
   if (fault || !supported_) run_.reset();
@@ -21,16 +21,16 @@ std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* a
 }
 
 std::optional<Fault> Trial::runFrames(IndexedFrames& world, std::vector<PairDigest>* answers) {
-  if (!run_->start(world.scene(), world.rewind())) return ended(0);
+  if (!run_->start(world.scene(), world.rewind())) return faultOfStatus(0);
   while (const std::optional<Frame> frame = world.next()) {
     if (cancelled_ && cancelled_()) throw Cancelled();
-    if (!run_->step(*frame)) return ended(frame->index);
+    if (!run_->step(*frame)) return faultOfStatus(frame->index);
     if (std::optional<Fault> fault = judge(*frame)) return fault;
     if (answers != nullptr) answers->push_back(digest(run_->answer()));
-    if (!run_->hasInstance()) return ended(frame->index);
+    if (!run_->hasInstance()) return faultOfStatus(frame->index);
   }
   run_->stop();
-  return ended(world.scene().frames);
+  return faultOfStatus(world.scene().frames);
 }
 
 std::optional<Fault> Trial::judge(const Frame& frame) {
@@ -41,12 +41,12 @@ std::optional<Fault> Trial::judge(const Frame& frame) {
                  suspectsOf(*difference, frame.boxes.size())};
   }
   if (!run_->hasInstance()) return std::nullopt;
-  const std::string broken = run_->validate();
-  if (broken.empty()) return std::nullopt;
-  return Fault{FaultKind::unsound, frame.index, broken};
+  const std::string violation = run_->validate();
+  if (violation.empty()) return std::nullopt;
+  return Fault{FaultKind::invariant_violation, frame.index, violation};
 }
 
-std::optional<Fault> Trial::ended(std::uint32_t frame) {
+std::optional<Fault> Trial::faultOfStatus(std::uint32_t frame) {
   switch (run_->status()) {
     case Status::ok:
       return std::nullopt;
@@ -68,24 +68,24 @@ std::optional<std::uint64_t> Trial::heapAfter(IndexedFrames& world, int passes) 
 }
 
 std::optional<Fault> Trial::leak(IndexedFrames& world) {
-  // Memory cached by libraries and malloc stops growing eventually. A leak grows with the passes.
+  // Caches of libraries and malloc eventually stop growing. A leak grows with the passes.
   constexpr int kFirstPasses = 10;
   constexpr std::array kPasses = {8, 16, 32, 64};
   constexpr std::uint64_t kMinBytes = 16;  // smallest allocation
-  constexpr double kGrows = 1.5;
+  constexpr double kMinGrowth = 1.5;
   std::optional<std::uint64_t> before = heapAfter(world, kFirstPasses);
-  std::uint64_t grown = 0;
+  std::uint64_t growth = 0;
   for (const int passes : kPasses) {
-    const std::optional<std::uint64_t> now = heapAfter(world, passes);
-    if (!before || !now || *now < *before + kMinBytes * static_cast<std::uint64_t>(passes) ||
-        static_cast<double>(*now - *before) < kGrows * static_cast<double>(grown)) {
+    const std::optional<std::uint64_t> after = heapAfter(world, passes);
+    if (!before || !after || *after < *before + kMinBytes * static_cast<std::uint64_t>(passes) ||
+        static_cast<double>(*after - *before) < kMinGrowth * static_cast<double>(growth)) {
       return std::nullopt;
     }
-    grown = *now - *before;
-    before = now;
+    growth = *after - *before;
+    before = after;
   }
   return Fault{FaultKind::leak, world.scene().frames,
-               fmt::format("each pass keeps about {} bytes", grown / kPasses.back())};
+               fmt::format("each pass leaks about {} bytes", growth / kPasses.back())};
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// A case on a world, and its faults.
+// Trials of a case on a world, and the resulting faults.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace broadmark {
 
-/// Runs a case on worlds, in one host until a fault; then in a new host.
+/// Runs a case on worlds: in one executor until a fault, then in a new one.
 class Trial {
  public:
-  /// `make_host` and `cancelled` are borrowed. Throws InputError for a bad parameter.
-  Trial(Case test_case, const ExecutorFactory& make_host, const CancelQuery& cancelled);
+  /// `make_executor` and `cancelled` are borrowed. Throws InputError for a bad parameter.
+  Trial(Case test_case, const ExecutorFactory& make_executor, const CancelQuery& cancelled);
 
   /// Runs all frames of a world; returns the first fault. With `answers`: appends the digest of
   /// each answer. Throws Cancelled, and InputError for a device that does not exist.
   std::optional<Fault> run(IndexedFrames& world, std::vector<PairDigest>* answers = nullptr);
-  /// Whether every pass over a world leaks memory.
+  /// Detects memory leaked by every pass over a world.
   std::optional<Fault> leak(IndexedFrames& world);
   /// Whether the case supports the last world.
   [[nodiscard]] bool supported() const { return supported_; }
@@ -26,13 +26,13 @@ class Trial {
  private:
   std::optional<Fault> runFrames(IndexedFrames& world, std::vector<PairDigest>* answers);
   std::optional<Fault> judge(const Frame& frame);
-  /// The fault that ended the host's instance.
-  std::optional<Fault> ended(std::uint32_t frame);
+  /// The fault that ended the instance, if any.
+  std::optional<Fault> faultOfStatus(std::uint32_t frame);
   /// The allocated memory after `passes` passes.
   std::optional<std::uint64_t> heapAfter(IndexedFrames& world, int passes);
 
   Case case_;
-  const ExecutorFactory& make_host_;
+  const ExecutorFactory& make_executor_;
   const CancelQuery& cancelled_;
   std::optional<CaseRun> run_;
   bool supported_ = true;

@@ -17,10 +17,10 @@ namespace {
 
 // Types copied to shared memory as they are.
 static_assert(sizeof(Aabb) == 32 && sizeof(Pair) == 8 && sizeof(RecordedDrawing::Box) == 48 &&
-              sizeof(RecordedDrawing::Line) == 28);
+              sizeof(RecordedDrawing::Segment) == 28);
 static_assert(std::is_trivially_copyable_v<Aabb> && std::is_trivially_copyable_v<Pair> &&
               std::is_trivially_copyable_v<RecordedDrawing::Box> &&
-              std::is_trivially_copyable_v<RecordedDrawing::Line>);
+              std::is_trivially_copyable_v<RecordedDrawing::Segment>);
 
 /// Longer than any message; longer ones would be truncated.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 17;
@@ -53,19 +53,19 @@ bool Channel::send(const Json& message) const {
 }
 
 bool Channel::wait(int milliseconds) const {
-  pollfd waiting{.fd = socket_.get(), .events = POLLIN, .revents = 0};
-  return ::poll(&waiting, 1, milliseconds) > 0;
+  pollfd descriptor{.fd = socket_.get(), .events = POLLIN, .revents = 0};
+  return ::poll(&descriptor, 1, milliseconds) > 0;
 }
 
 std::optional<Json> Channel::receive() {
   buffer_.resize(kMaxMessageBytes);
-  ssize_t got = -1;
+  ssize_t received = -1;
   do {
-    got = ::recv(socket_.get(), buffer_.data(), buffer_.size(), 0);
-  } while (got < 0 && errno == EINTR);
-  if (got <= 0) return std::nullopt;
+    received = ::recv(socket_.get(), buffer_.data(), buffer_.size(), 0);
+  } while (received < 0 && errno == EINTR);
+  if (received <= 0) return std::nullopt;
   try {
-    return parseJson({buffer_.data(), static_cast<std::size_t>(got)}, "message");
+    return parseJson({buffer_.data(), static_cast<std::size_t>(received)}, "message");
   } catch (const InputError& error) {
     throw HostError(error.what());
   }
@@ -96,8 +96,8 @@ void SharedMemory::readBytes(std::span<std::byte> bytes, std::uint64_t offset) c
   }
 }
 
-void SharedMemory::requireHeld(std::uint64_t offset, std::uint64_t count,
-                               std::size_t item_bytes) const {
+void SharedMemory::requireAvailable(std::uint64_t offset, std::uint64_t count,
+                                    std::size_t item_bytes) const {
   struct stat status {};
   if (::fstat(file_.get(), &status) != 0) throw systemError("cannot read shared memory");
   const auto size = static_cast<std::uint64_t>(status.st_size);
@@ -129,9 +129,9 @@ Case caseFrom(const Json& json, const AlgorithmFinder& find) {
     throw InputError(fmt::format("--plugin: {}: was replaced after the run had begun",
                                  test_case.algorithm.plugin));
   }
-  const auto known = kIsas.find(isa);
-  if (!known) throw UnsupportedError("there is no instruction set " + isa);
-  test_case.isa = *known;
+  const auto value = kIsas.find(isa);
+  if (!value) throw UnsupportedError("there is no instruction set " + isa);
+  test_case.isa = *value;
   test_case.answer = kAnswerKinds.find(json.at("answer").get<std::string>()).value();
   return test_case;
 }
@@ -172,12 +172,12 @@ CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::ui
                            std::size_t bodies) {
   if (json.is_null()) return {};
   std::vector<BodyGroups> groups(bodies);
-  const auto read = [&]<class Item>(const char* name, Item BodyGroups::*part) {
+  const auto read = [&]<class Item>(const char* name, Item BodyGroups::*member) {
     if (!json.at(name).get<bool>()) return;
     std::vector<Item> items;
     memory.read(items, bodies, offset);
     offset += bodies * sizeof(Item);
-    for (std::size_t i = 0; i < bodies; ++i) groups[i].*part = items[i];
+    for (std::size_t i = 0; i < bodies; ++i) groups[i].*member = items[i];
   };
   read("tags", &BodyGroups::tags);
   read("worlds", &BodyGroups::world);

@@ -1,8 +1,8 @@
 // The protocol between a process and its worker process.
 //
-// A message is one JSON object in one packet. At first the worker sends its version:
+// A message is one JSON object in one packet. First the worker sends its version:
 //   {"protocol": 4, "program": "0.1.0"}
-// Then it answers one call after the other, with the last column or with
+// Then it answers each call, with the last column or with
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
 //   call        message (and shared memory)                       answer (and shared memory)
@@ -62,7 +62,8 @@ class Channel {
   /// Waits for a packet, up to `milliseconds`; without limit if negative. Returns true once a
   /// packet has arrived or the other side has hung up.
   [[nodiscard]] bool wait(int milliseconds) const;
-  /// The next message; nothing once the other side has gone. Throws HostError if it is malformed.
+  /// The next message; nullopt once the other side has hung up. Throws HostError if it is
+  /// malformed.
   [[nodiscard]] std::optional<Json> receive();
 
  private:
@@ -70,7 +71,6 @@ class Channel {
   std::vector<char> buffer_;
 };
 
-/// Both ends of a new channel.
 struct ChannelEnds {
   FileDescriptor here;
   FileDescriptor there;
@@ -101,7 +101,7 @@ class SharedMemory {
   template <class Item, class Allocator>
   void read(std::vector<Item, Allocator>& items, std::size_t count,
             std::uint64_t offset = 0) const {
-    requireHeld(offset, count, sizeof(Item));
+    requireAvailable(offset, count, sizeof(Item));
     items.resize(count);
     readBytes(std::as_writable_bytes(std::span(items)), offset);
   }
@@ -110,13 +110,13 @@ class SharedMemory {
   void writeBytes(std::span<const std::byte> bytes, std::uint64_t offset) const;
   void readBytes(std::span<std::byte> bytes, std::uint64_t offset) const;
   /// Throws HostError if the range exceeds the memory.
-  void requireHeld(std::uint64_t offset, std::uint64_t count, std::size_t item_bytes) const;
+  void requireAvailable(std::uint64_t offset, std::uint64_t count, std::size_t item_bytes) const;
 
   FileDescriptor file_;
 };
 
-/// The worker's protocol loop, without changes to its process: answers calls until the other side
-/// hangs up. Throws HostError for a malformed message.
+/// The worker's protocol loop, without any change of its process: answers calls until the other
+/// side hangs up. Throws HostError for a malformed message.
 void answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
                  const AlgorithmFinder& find);
 
@@ -140,7 +140,7 @@ Json namedToJson(const Table& table, const Values& values) {
   }
   return json;
 }
-/// The reverse. Missing values are left unchanged.
+/// The reverse. Missing values remain unchanged.
 template <class Table, class Values>
 void readNamed(const Json& json, const Table& table, Values& values) {
   for (const auto& [key, name] : table.entries) {

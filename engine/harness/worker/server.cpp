@@ -34,9 +34,9 @@ std::uint64_t heapBytes() {
 /// Lets the OOM killer pick the worker, not its parent.
 void raiseOomScore() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
-/// Disables what algorithms do not need. Core dumps: the parent reports the signal of a crash, and
-/// a dump of that much memory would fill the disc. Privileges: no program with more rights than the
-/// user's (sudo) is started from here.
+/// Disables facilities that algorithms do not need. Core dumps: the parent reports the signal of a
+/// crash, and a dump of that much memory would fill the disk. Privileges: no program with more
+/// rights than the user's (sudo) can be started.
 void dropPrivileges() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
@@ -48,7 +48,6 @@ class Server {
   Server(SharedMemory frames, SharedMemory answers, const AlgorithmFinder& find)
       : find_(find), frames_(std::move(frames)), answers_(std::move(answers)) {}
 
-  /// The answer to a call.
   Json answer(const Json& message) {
     try {
       const auto call = calls().find(message.at("call").get<std::string>());
@@ -66,7 +65,7 @@ class Server {
  private:
   using Call = Json (Server::*)(const Json&);
   static const std::map<std::string, Call>& calls() {
-    static const std::map<std::string, Call> all = {{"case", &Server::takeCase},
+    static const std::map<std::string, Call> all = {{"case", &Server::setCase},
                                                     {"start", &Server::start},
                                                     {"step", &Server::step},
                                                     {"digest", &Server::digest},
@@ -86,22 +85,22 @@ class Server {
     return {{"error", text}, {"kind", kind}};
   }
 
-  Json takeCase(const Json& message) {
+  Json setCase(const Json& message) {
     started_ = false;
-    host_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
-    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>(), /*for_good=*/true);
+    executor_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
+    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>(), /*permanent=*/true);
     return Json::object();
   }
 
-  InProcessExecutor& host() {
-    if (!host_) throw std::runtime_error("no case has been named");
-    return *host_;
+  InProcessExecutor& executor() {
+    if (!executor_) throw std::runtime_error("no case has been named");
+    return *executor_;
   }
 
   /// Only during a pass.
-  InProcessExecutor& startedHost() {
+  InProcessExecutor& startedExecutor() {
     if (!started_) throw std::runtime_error("no pass has been started");
-    return host();
+    return executor();
   }
 
   Json start(const Json& message) {
@@ -114,13 +113,13 @@ class Server {
     if (!measured_) peak_before_ = peakBytes();
     const Frame first{0, boxes_, std::span<const std::uint32_t>()};
     started_ = false;
-    const std::int64_t initialize_ns = host().start(scene, first);
+    const std::int64_t initialize_ns = executor().start(scene, first);
     started_ = true;
-    return {{"initialize_ns", initialize_ns}, {"pinned", host().report().pinned}};
+    return {{"initialize_ns", initialize_ns}, {"pinned", executor().report().pinned}};
   }
 
   /// Copies the frame from shared memory to private memory.
-  Frame takeFrame(const Json& message) {
+  Frame readFrame(const Json& message) {
     frames_.read(changed_, message.at("changed").get<std::size_t>());
     frames_.read(changed_boxes_, changed_.size(), changed_.size() * sizeof(std::uint32_t));
     for (std::size_t i = 0; i < changed_.size(); ++i) {
@@ -130,23 +129,23 @@ class Server {
   }
 
   Json step(const Json& message) {
-    const StepResult result = startedHost().step(takeFrame(message));
+    const StepResult result = startedExecutor().step(readFrame(message));
     return {{"times_ns", worker::namedToJson(kPhases, result.times)}, {"pairs", result.pairs}};
   }
 
   Json digest(const Json& /*message*/) {
-    const PairDigest digest = startedHost().digest();
+    const PairDigest digest = startedExecutor().digest();
     return {{"count", digest.count}, {"hash", digest.hash}};
   }
 
   Json pairs(const Json& /*message*/) {
-    const PairRuns runs = startedHost().answer();
+    const PairRuns runs = startedExecutor().answer();
     sharePairs(runs, 0);
     return {{"pairs", pairCount(runs)}};
   }
 
   Json events(const Json& /*message*/) {
-    const PairEvents events = startedHost().events();
+    const PairEvents events = startedExecutor().events();
     sharePairs(events.ended, sharePairs(events.began, 0));
     return {{"began", pairCount(events.began)}, {"ended", pairCount(events.ended)}};
   }
@@ -157,40 +156,40 @@ class Server {
     return offset;
   }
 
-  Json counters(const Json& /*message*/) { return {{"counts", startedHost().counters()}}; }
-  Json setup(const Json& /*message*/) { return {{"counts", startedHost().setup()}}; }
+  Json counters(const Json& /*message*/) { return {{"counts", startedExecutor().counters()}}; }
+  Json setup(const Json& /*message*/) { return {{"counts", startedExecutor().setup()}}; }
 
   Json structure(const Json& /*message*/) {
-    const RecordedDrawing drawing = startedHost().structure();
+    const RecordedDrawing drawing = startedExecutor().structure();
     std::uint64_t end = answers_.write(std::span(drawing.boxes()));
     end = answers_.write(std::span(drawing.lines()), end);
     answers_.write(std::span(drawing.tests()), end);
     return {{"boxes", drawing.boxes().size()},
             {"lines", drawing.lines().size()},
             {"tests", drawing.tests().size()},
-            {"left_out", drawing.leftOut()}};
+            {"left_out", drawing.dropped()}};
   }
 
-  Json validate(const Json& /*message*/) { return {{"broken", startedHost().validate()}}; }
+  Json validate(const Json& /*message*/) { return {{"broken", startedExecutor().validate()}}; }
 
   Json stop(const Json& /*message*/) {
     if (!measured_) measure();
     started_ = false;
-    host().stop();
+    executor().stop();
     // Other workers run while this one waits for its next pass.
     LargeVector<Aabb>().swap(boxes_);
     std::vector<Aabb>().swap(changed_boxes_);
     std::vector<std::uint32_t>().swap(changed_);
-    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
+    return {{"peak_bytes", peak_growth_ ? Json(*peak_growth_) : Json(nullptr)},
             {"heap_bytes", heapBytes()},
-            {"processor", worker::namedToJson(kProcessorCounters, host().report().processor)}};
+            {"processor", worker::namedToJson(kProcessorCounters, executor().report().processor)}};
   }
 
   /// Only the first pass is representative: later passes reuse freed memory.
   void measure() {
     measured_ = true;
     const auto peak = peakBytes();
-    if (peak && peak_before_) growth_ = *peak - *peak_before_;
+    if (peak && peak_before_) peak_growth_ = *peak - *peak_before_;
   }
 
   const AlgorithmFinder& find_;
@@ -199,17 +198,17 @@ class Server {
   LargeVector<Aabb> boxes_;  ///< of the last frame
   std::vector<std::uint32_t> changed_;
   std::vector<Aabb> changed_boxes_;
-  std::optional<InProcessExecutor> host_;
+  std::optional<InProcessExecutor> executor_;
   bool started_ = false;
   bool measured_ = false;
   std::optional<std::uint64_t> peak_before_;
-  std::optional<std::uint64_t> growth_;
+  std::optional<std::uint64_t> peak_growth_;
 };
 
 }  // namespace
 
 void serveCase(const AlgorithmFinder& find) {
-  // Ctrl-C is for the parent process. This one ends when the parent hangs up.
+  // Ctrl-C is for the parent process. The worker ends when the parent hangs up.
   std::signal(SIGINT, SIG_IGN);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   raiseOomScore();

@@ -24,23 +24,23 @@ using Clock = std::chrono::steady_clock;
 using worker::SharedMemory;
 
 /// Grace period before the process is killed.
-constexpr std::chrono::seconds kTimeToEnd{5};
+constexpr std::chrono::seconds kGracePeriod{5};
 
 std::string endText(int wait_status) {
   if (WIFEXITED(wait_status)) {
-    return fmt::format("ended its process by itself, with status {}", WEXITSTATUS(wait_status));
+    return fmt::format("exited with status {}", WEXITSTATUS(wait_status));
   }
   const int signal = WTERMSIG(wait_status);
   const char* name = ::sigabbrev_np(signal);
   const std::string what =
       fmt::format("SIG{} ({})", name == nullptr ? "?" : name, ::sigdescr_np(signal));
-  if (signal == SIGKILL) return "killed with " + what + ", perhaps as memory ran out";
+  if (signal == SIGKILL) return "killed with " + what + ", possibly out of memory";
   return "crashed with " + what;
 }
 
 /// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, its
 /// output goes to our standard error. Throws InputError when it cannot be started.
-pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed) {
+pid_t spawn(std::vector<std::string> command, std::initializer_list<int> descriptors) {
   posix_spawn_file_actions_t actions{};
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -48,8 +48,8 @@ pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed)
   ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
   std::vector<FileDescriptor> copies;
   int next = STDERR_FILENO + 1;
-  for (const int descriptor : handed) {
-    // Via a number beyond all of these, so that none is overwritten before it is copied.
+  for (const int descriptor : descriptors) {
+    // Via a number beyond all others, so that none is overwritten before it is copied.
     constexpr int kFirstCopy = 16;
     copies.emplace_back(::fcntl(descriptor, F_DUPFD_CLOEXEC, kFirstCopy));
     ::posix_spawn_file_actions_adddup2(&actions, copies.back().get(), next++);
@@ -69,30 +69,30 @@ pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed)
   return pid;
 }
 
-/// How often `cancelled` is polled during a wait.
+/// Interval for polling `cancelled` during a wait.
 constexpr int kPollMilliseconds = 50;
 
 /// The connection to a process; ends the process when destroyed.
-class Link {
+class Connection {
  public:
-  explicit Link(const WorkerOptions& options) : Link(options, worker::openChannel()) {}
-  ~Link() {
+  explicit Connection(const WorkerOptions& options) : Connection(options, worker::openChannel()) {}
+  ~Connection() {
     // Closing the channel ends the process, unless it hangs.
     channel_.reset();
     if (alive()) wait();
   }
-  Link(const Link&) = delete;
-  Link& operator=(const Link&) = delete;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
   SharedMemory frames;
   SharedMemory answers;
 
-  /// Whether the process was not yet reaped by kill() or wait().
+  /// False once kill() or wait() has reaped the process.
   [[nodiscard]] bool alive() const { return pid_ != 0; }
 
   /// Exchanges versions, and sends the case.
-  void begin(const Json& case_message) {
-    greet();
+  void setUp(const Json& case_message) {
+    checkVersion();
     call(case_message, options_.begin_limit);
   }
 
@@ -102,13 +102,13 @@ class Link {
  private:
   using Seconds = std::chrono::duration<double>;
 
-  void greet() {
-    const std::optional<Json> hello = receive(options_.begin_limit);
-    const int version = hello ? hello->value("protocol", 0) : 0;
+  void checkVersion() {
+    const std::optional<Json> greeting = receive(options_.begin_limit);
+    const int version = greeting ? greeting->value("protocol", 0) : 0;
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
-    if (!hello) {
-      throw InputError(fmt::format("{}: not fit as a worker process: {}", program, wait()));
+    if (!greeting) {
+      throw InputError(fmt::format("{}: cannot serve as a worker process: {}", program, wait()));
     }
     throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
                                  program, version, worker::kProtocolVersion));
@@ -126,12 +126,12 @@ class Link {
     throw std::runtime_error(text);
   }
 
-  Link(const WorkerOptions& options, worker::ChannelEnds ends)
+  Connection(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
         pid_(spawn(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()})),
         channel_(std::in_place, std::move(ends.here)) {}
 
-  /// The next message; nothing once the process has hung up.
+  /// The next message; nullopt once the process has hung up.
   std::optional<Json> receive(Seconds limit) {
     const auto end = Clock::now() + limit;
     while (!channel_->wait(kPollMilliseconds)) {
@@ -157,10 +157,10 @@ class Link {
     wait();
   }
 
-  /// Waits for the process to end, and kills it after a while. Returns how it ended: "crashed with
-  /// SIGSEGV (Segmentation fault)".
+  /// Waits for the process to end, and kills it after the grace period. Returns the outcome:
+  /// "crashed with SIGSEGV (Segmentation fault)".
   std::string wait() {
-    const auto end = Clock::now() + kTimeToEnd;
+    const auto end = Clock::now() + kGracePeriod;
     int status = 0;
     while (::waitpid(pid_, &status, WNOHANG) == 0) {
       if (Clock::now() > end) ::kill(pid_, SIGKILL);
@@ -170,7 +170,7 @@ class Link {
     return endText(status);
   }
 
-  /// The process has hung up.
+  /// Reports the end of the process.
   [[noreturn]] void fail() { throw HostError(wait()); }
 
   const WorkerOptions& options_;
@@ -186,11 +186,11 @@ class WorkerProcess final : public CaseExecutor {
   std::int64_t start(const SceneInfo& scene, const Frame& first) override {
     report_.processor = {};
     open();
-    const std::uint64_t end = link_->frames.write(first.boxes);
-    const Json started =
-        link_->call({{"call", "start"},
-                     {"scene", worker::toJson(scene)},
-                     {"filter", worker::writeFilter(scene.filter, link_->frames, end)}});
+    const std::uint64_t end = connection_->frames.write(first.boxes);
+    const Json started = connection_->call(
+        {{"call", "start"},
+         {"scene", worker::toJson(scene)},
+         {"filter", worker::writeFilter(scene.filter, connection_->frames, end)}});
     report_.pinned = started.value("pinned", false);
     return started.at("initialize_ns").get<std::int64_t>();
   }
@@ -198,9 +198,10 @@ class WorkerProcess final : public CaseExecutor {
   StepResult step(const Frame& frame) override {
     changed_boxes_.clear();
     for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
-    link_->frames.write(std::span<const Aabb>(changed_boxes_), link_->frames.write(*frame.changed));
-    const Json answer =
-        link_->call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
+    connection_->frames.write(std::span<const Aabb>(changed_boxes_),
+                              connection_->frames.write(*frame.changed));
+    const Json answer = connection_->call(
+        {{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
     StepResult result{.pairs = answer.at("pairs").get<std::uint64_t>()};
     worker::readNamed(answer.at("times_ns"), kPhases, result.times);
     return result;
@@ -221,8 +222,8 @@ class WorkerProcess final : public CaseExecutor {
     report_.processor = {};
     worker::readNamed(stopped.value("processor", Json::object()), kProcessorCounters,
                       report_.processor);
-    link_->frames.clear();
-    link_->answers.clear();
+    connection_->frames.clear();
+    connection_->answers.clear();
   }
 
   PairDigest digest() override {
@@ -232,16 +233,16 @@ class WorkerProcess final : public CaseExecutor {
   }
 
   PairRuns answer() override {
-    link_->answers.read(answer_, call("answer").at("pairs").get<std::size_t>());
+    connection_->answers.read(answer_, call("answer").at("pairs").get<std::size_t>());
     answer_run_ = answer_;
     return {&answer_run_, 1};
   }
 
   PairEvents events() override {
     const Json counts = call("events");
-    link_->answers.read(answer_, counts.at("began").get<std::size_t>());
-    link_->answers.read(ended_, counts.at("ended").get<std::size_t>(),
-                        answer_.size() * sizeof(Pair));
+    connection_->answers.read(answer_, counts.at("began").get<std::size_t>());
+    connection_->answers.read(ended_, counts.at("ended").get<std::size_t>(),
+                              answer_.size() * sizeof(Pair));
     answer_run_ = answer_;
     ended_run_ = ended_;
     return {{&answer_run_, 1}, {&ended_run_, 1}};
@@ -254,37 +255,38 @@ class WorkerProcess final : public CaseExecutor {
   RecordedDrawing structure() override {
     const Json drawn = call("structure");
     std::vector<RecordedDrawing::Box> boxes;
-    std::vector<RecordedDrawing::Line> lines;
+    std::vector<RecordedDrawing::Segment> lines;
     std::vector<std::uint32_t> tests;
-    link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
+    connection_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
     std::uint64_t end = boxes.size() * sizeof(RecordedDrawing::Box);
-    link_->answers.read(lines, drawn.at("lines").get<std::size_t>(), end);
-    end += lines.size() * sizeof(RecordedDrawing::Line);
-    link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // not in older versions
+    connection_->answers.read(lines, drawn.at("lines").get<std::size_t>(), end);
+    end += lines.size() * sizeof(RecordedDrawing::Segment);
+    connection_->answers.read(tests, drawn.value("tests", std::size_t{0}),
+                              end);  // not in older versions
     return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
             std::move(tests)};
   }
 
  private:
-  [[nodiscard]] bool isOpen() const { return link_ && link_->alive(); }
+  [[nodiscard]] bool isOpen() const { return connection_ && connection_->alive(); }
 
   /// Starts the process unless it runs.
   void open() {
     if (isOpen()) return;
-    link_ = std::make_unique<Link>(options_);
+    connection_ = std::make_unique<Connection>(options_);
     Json message = worker::toJson(case_);
     message["call"] = "case";
     message["memory_limit_bytes"] = options_.memory_limit_bytes;
     message["pin"] = options_.pin;
-    link_->begin(message);
+    connection_->setUp(message);
   }
 
   /// A call without arguments.
-  Json call(const char* name) { return link_->call({{"call", name}}); }
+  Json call(const char* name) { return connection_->call({{"call", name}}); }
 
   Case case_;
   WorkerOptions options_;
-  std::unique_ptr<Link> link_;
+  std::unique_ptr<Connection> connection_;
   std::vector<Aabb> changed_boxes_;
   std::vector<Pair> answer_;  ///< for events: the begun pairs
   std::vector<Pair> ended_;

@@ -82,7 +82,6 @@ constexpr Aabb enlarged(Aabb box, float margin) {
   return box;
 }
 
-/// The smallest box that holds both.
 constexpr Aabb merged(const Aabb& a, const Aabb& b) {
   Aabb box;
   for (int axis = 0; axis < 3; ++axis) {

@@ -13,23 +13,23 @@ namespace broadmark {
 /// Whether bodies appear and disappear in the scene, or some pairs are unwanted.
 bool isChangingWorld(const SceneInfo& scene);
 
-/// For an algorithm that handles only boxes, in a number that may vary between frames: passes only
-/// participating bodies on, and drops unwanted pairs. Every frame must say what changed since the
-/// one before.
+/// Adapts an algorithm that handles only boxes, in varying number: passes only
+/// active bodies to it, and drops unwanted pairs. Every frame must list the changes since the
+/// frame before.
 std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm);
 
 /// The number of worlds with bodies in the scene.
 std::size_t worldCount(const SceneInfo& scene);
 
-/// Makes an instance for a single-world scene, with the case's parameters.
+/// Creates an instance for a single-world scene, with the case's parameters.
 using InstanceMaker = std::function<std::unique_ptr<BroadPhase>(const SceneInfo& world)>;
 
-/// Several worlds at one place, for an algorithm that would mix their bodies up in one structure:
-/// an instance for each world. With `concurrent`, instances may be called at the same time.
+/// Adapts an algorithm that would mix the bodies of several worlds at the same place:
+/// one instance per world. With `concurrent`, instances may be called at the same time.
 std::unique_ptr<BroadPhase> perWorld(const SceneInfo& scene, const InstanceMaker& make,
                                      bool concurrent);
 
-/// For an algorithm that reports only the pairs of each frame: adds events.
+/// Adds events to an algorithm that reports only the pairs of each frame.
 std::unique_ptr<BroadPhase> withEvents(std::unique_ptr<BroadPhase> algorithm);
 
 }  // namespace broadmark

@@ -13,12 +13,12 @@ namespace broadmark {
 
 /// Support for worlds in which bodies appear and disappear, or some pairs are unwanted.
 enum class ChangingWorlds {
-  /// None: such worlds are skipped.
+  /// No support: such worlds are skipped.
   unknown,
   /// Frames are independent and may differ in the number of bodies: an adapter removes absent
   /// bodies from the frames and unwanted pairs from the answers.
   compacted,
-  /// By the algorithm itself.
+  /// Support by the algorithm itself.
   native
 };
 
@@ -26,30 +26,30 @@ enum class ChangingWorlds {
 struct AlgorithmTraits {
   bool parallel = false;     ///< uses all threads it is given
   bool vectorised = false;   ///< has per-ISA kernels
-  bool on_device = false;    ///< on a compute device with a driver that starts threads itself
+  bool on_device = false;    ///< runs on a compute device, with a driver that starts threads
   bool incremental = false;  ///< retains pairs or a structure between frames
-  bool events = false;       ///< finds begun and ended pairs itself: BroadPhase::events()
+  bool events = false;       ///< reports begun and ended pairs: BroadPhase::events()
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
-  /// A library that it calls allocates in a steady state, unavoidably.
+  /// A library called by the algorithm allocates in a steady state, unavoidably.
   bool library_allocates = false;
-  /// A library that it calls retains memory for every instance: no leak of the algorithm's.
+  /// A library called by the algorithm leaks memory for every instance.
   bool library_leaks = false;
   /// Treatment of absent bodies and of unwanted pairs.
   ChangingWorlds changing_worlds = ChangingWorlds::unknown;
-  /// Each of several worlds at one place has its own instance, however small: for an algorithm with
-  /// a cost for bodies of other worlds at the same place, or for distant bodies. Without it a
+  /// Each of several worlds at the same place has its own instance, however small: for algorithms
+  /// with a cost for bodies of other worlds at the same place, or for distant bodies. Without it a
   /// `compacted` algorithm gets small worlds side by side in one instance (on a device, all
   /// worlds); a `native` one gets all bodies unmoved.
   bool instance_per_world = false;
-  /// Worlds with fewer bodies than this are small: from here on separate instances are quicker.
+  /// Worlds with fewer bodies than this are small; for larger ones separate instances are faster.
   std::size_t side_by_side_below = 100;
   /// Largest number of bodies supported.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
-  /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Other code
+  /// The process-wide state that calls depend on, as in exclusive_use.h; "": none. Other code
   /// may use it between two calls.
   std::string exclusive = {};
-  /// Parameter values that reach code which the default values hardly ever reach: tests run each
+  /// Parameter values for code that the default values hardly ever reach: tests run each
   /// configuration with these, too.
   ParameterValues rare_parameters = {};
 };
@@ -59,7 +59,7 @@ struct AlgorithmDescription {
   std::string principle;      ///< "brute force", "sorting", "grid", "tree"
   std::string optimisations;  ///< besides SIMD, threads and devices; "": none
   std::string time;           ///< complexity: "O(n²)"
-  std::string space;          ///< "O(n + k)", k the number of pairs
+  std::string space;          ///< "O(n + k)" for k pairs
   std::string source;         ///< paper and section, or library
 };
 
@@ -79,7 +79,7 @@ struct Algorithm {
   AlgorithmDescription description = {};
   /// A new instance with default parameters.
   std::function<std::unique_ptr<BroadPhase>()> create;
-  std::string plugin = {};  ///< the file it was loaded from; "": built in
+  std::string plugin = {};  ///< the plug-in's file; "": built in
   PluginBuild plugin_build = {};
 };
 

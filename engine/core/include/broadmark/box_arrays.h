@@ -31,10 +31,10 @@ class BoxArrays {
     }
   }
 
-  /// Makes room for `size` boxes and writes the padding behind them. Keeps the memory if it
-  /// suffices; does not initialise the boxes.
+  /// Resizes to `size` uninitialised boxes, followed by padding. Reuses the memory if it
+  /// suffices.
   void resize(std::size_t size);
-  /// Becomes a transposed copy of `boxes`.
+  /// Stores a transposed copy of `boxes`.
   void assign(std::span<const Aabb> boxes);
 
  private:

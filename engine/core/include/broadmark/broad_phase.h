@@ -32,7 +32,7 @@ struct TransferTimes {
 /// use the workers of its ExecutionContext. A steady state allocates nothing.
 ///
 /// An algorithm that finds begun and ended pairs itself (traits.events) may get a reportEvents()
-/// call before initialize: then its answer is events(), and overlaps() is not called. For all
+/// call before initialize: then the answer is events(), and overlaps() is not called. For all
 /// others events are derived from the answers of two frames, as part of phase 4.
 class BroadPhase : public Parametrised {
  public:
@@ -40,12 +40,12 @@ class BroadPhase : public Parametrised {
   /// each is enlarged by this much on every side (world units). Depends on the parameters alone.
   [[nodiscard]] virtual float margin() const { return 0; }
 
-  /// Builds everything for the initial pose. `execution` outlives the instance. Throws
-  /// UnsupportedError when it cannot run here.
+  /// Builds all structures for the initial pose. `execution` outlives the instance. Throws
+  /// UnsupportedError if the algorithm cannot run here.
   virtual void initialize(const SceneInfo& scene, const Frame& first,
                           ExecutionContext& execution) = 0;
 
-  /// Phase 1: copies the new boxes. The frame is valid only until this returns.
+  /// Phase 1: copies the new boxes. The frame is valid only during the call.
   virtual void updateObjects(const Frame& frame) = 0;
   /// Phase 2: drops the last frame's answer.
   virtual void cleanCache() {}
@@ -68,23 +68,23 @@ class BroadPhase : public Parametrised {
   /// Copy times within the phases of the last frame (algorithms on a compute device).
   [[nodiscard]] virtual TransferTimes transfers() const { return {}; }
 
-  /// Draws the present acceleration structure.
+  /// Draws the current acceleration structure.
   virtual void drawStructure(DebugDraw&) const {}
   /// Visits the work counters of the last frame (incremental algorithms).
   virtual void visitCounters(const CounterVisitor&) const {}
-  /// Visits what was counted once, in initialize(): the time to build kernels, for instance.
+  /// Visits the counters of initialize(), such as the time to build kernels.
   virtual void visitSetup(const CounterVisitor&) const {}
-  /// Checks the internal invariants: "" or the broken one. For tests; may be slow.
+  /// Checks the internal invariants: "", or the violated one. For tests; may be slow.
   [[nodiscard]] virtual std::string validate() const { return {}; }
 };
 
 // Three helper layers. The families here use them, too, except those that retain pairs between
-// frames (KD, Tracy) and those that get all pairs at once from a compute device: these have no use
+// frames (KD, Tracy) and those that get all pairs at once from a compute device: they have no use
 // for pair buffers that are emptied every frame, and derive from BroadPhase.
 
 /// Layer 1: holds the execution context and one pair buffer per worker. Implements phases 2 and 4:
-/// an algorithm adds pairs in findPairs(), to empty buffers, which become the answer. An override
-/// of initialize() calls this one first; if it does not, the first search throws std::logic_error.
+/// findPairs() adds pairs to the empty buffers, which become the answer. An override
+/// of initialize() must first call this one; otherwise the first search throws std::logic_error.
 class PairBroadPhase : public BroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;

@@ -12,7 +12,7 @@ namespace broadmark {
 /// steady state allocates nothing.
 class ChangeDetector {
  public:
-  /// Returns the frame with the bodies changed since the last call for this source; none in frame
+  /// Returns the frame with the bodies changed since the last call; none in frame
   /// 0. Valid until the next call.
   Frame complete(const Frame& frame) {
     if (frame.changed) return frame;

@@ -1,4 +1,4 @@
-// Which pairs of bodies are wanted, independently of their positions.
+// Collision filters: the wanted pairs of bodies, independent of positions.
 #pragma once
 
 #include <array>
@@ -11,14 +11,12 @@
 
 namespace broadmark {
 
-/// Which layers collide: bit b of row a. Symmetric.
+/// The symmetric matrix of colliding layers: bit b of row a.
 class LayerMatrix {
  public:
   static constexpr std::size_t kLayers = 32;
 
-  /// No layers collide.
   constexpr LayerMatrix() = default;
-  /// All layers collide.
   static LayerMatrix all();
 
   LayerMatrix& set(std::size_t a, std::size_t b, bool collide = true);
@@ -51,26 +49,26 @@ struct BodyGroups {
 class CollisionFilter {
  public:
   CollisionFilter() = default;
-  /// One body per entry of `bodies`. Throws std::invalid_argument for a layer that does not exist.
+  /// `bodies`: the groups of each body. Throws std::invalid_argument for a nonexistent layer.
   CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix);
 
-  /// Whether the overlap of these two bodies counts; symmetric, a != b.
+  /// Whether an overlap of these two bodies counts; symmetric, a != b.
   [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
     return data_ == nullptr || data_->wanted(a, b);
   }
-  /// True if every pair is wanted; may be false even so.
+  /// Sufficient condition for all pairs to be wanted.
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
 
-  /// An identity: equal for copies of one filter, and unique while it exists.
+  /// An identity: equal for copies of one filter, and unique during its lifetime.
   [[nodiscard]] const void* address() const { return data_.get(); }
 
   [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
     return data_ == nullptr || data_->layers.empty() ? 0 : data_->layers[body];
   }
-  /// As given; default values for bodies beyond.
+  /// The groups of a body; default values beyond the last body.
   [[nodiscard]] BodyGroups groupsOf(std::uint32_t body) const;
   [[nodiscard]] LayerMatrix matrix() const;
-  /// One per body; empty where all bodies are in layer 0, in world 0, without tags.
+  /// One entry per body; empty if all bodies have the default value.
   [[nodiscard]] std::span<const std::uint8_t> layers() const;
   [[nodiscard]] std::span<const std::uint32_t> worlds() const;
   [[nodiscard]] std::span<const BodyGroups::Tags> tags() const;

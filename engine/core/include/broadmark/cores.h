@@ -10,13 +10,13 @@
 
 namespace broadmark {
 
-/// Where the system reports on itself. Tests substitute their own folders.
+/// The system's report folders. Tests substitute their own.
 struct SystemFolders {
   std::filesystem::path proc = "/proc";
   std::filesystem::path sys = "/sys";
 };
 
-/// The cores that the calling thread may use, by the system's numbers, ascending.
+/// The system's numbers of the cores that the calling thread may use, ascending.
 std::vector<int> usableCores();
 
 /// A core's busy and total time since the system started, in ticks.
@@ -24,24 +24,24 @@ struct CoreTicks {
   std::uint64_t busy = 0;
   std::uint64_t idle = 0;
 };
-/// By the core's number.
+/// The ticks of all cores, by number.
 std::map<int, CoreTicks> coreTicks(const SystemFolders& = {});
 
-/// The fraction of a time span in which each core was busy, by its number.
+/// The busy fraction of each core in a time span, by number.
 using BusyShares = std::map<int, double>;
-/// 0 for an unknown core.
+/// The busy fraction of a core; 0 if unknown.
 double busyShare(const BusyShares& busy, int core);
 BusyShares busySharesBetween(const std::map<int, CoreTicks>& before,
                              const std::map<int, CoreTicks>& after);
-/// The busy fractions over the coming moment; the calling thread sleeps through it. The system
+/// Measures the busy fractions over `duration`, during which the calling thread sleeps. The system
 /// counts in ticks of 10 ms.
-BusyShares watchCores(std::chrono::milliseconds moment, const SystemFolders& = {});
+BusyShares measureBusyShares(std::chrono::milliseconds duration, const SystemFolders& = {});
 
-/// For each core its SMT siblings (hyper-threads).
+/// The SMT siblings (hyper-threads) of each core.
 using CoreSiblings = std::map<int, std::vector<int>>;
 CoreSiblings coreSiblings(const SystemFolders& = {});
 
-/// `count` of the usable cores, with the least other work on them and their siblings, and if
+/// Chooses the `count` usable cores with the least other load on them and their siblings, if
 /// possible no two siblings. Empty if fewer cores are usable.
 std::vector<int> quietestCores(int count, const std::vector<int>& usable, const BusyShares& busy,
                                const CoreSiblings& siblings);

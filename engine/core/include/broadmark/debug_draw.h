@@ -13,7 +13,7 @@ enum class StructureRole {
   cell,          ///< or a node
   cell_part,     ///< part of a divided cell
   split,         ///< a split plane or a sort axis
-  best_split,    ///< the chosen one of several
+  best_split,    ///< the chosen one of several splits
   moving_node,   ///< of bodies that move
   resting_node,  ///< of bodies at rest
 };
@@ -27,13 +27,13 @@ class DebugDraw {
   virtual void box(const Aabb&, StructureRole, int level) = 0;
   virtual void line(const std::array<float, 3>& from, const std::array<float, 3>& to,
                     StructureRole) = 0;
-  /// A cell with `population` bodies, more than 0. Views of the cells' occupancy colour it by a
+  /// A cell with `population` > 0 bodies. Views of the cells' occupancy colour it by a
   /// scale instead.
   virtual void cell(const Aabb& bounds, int level, std::uint32_t /*population*/) {
     box(bounds, StructureRole::cell, level);
   }
   /// The number of box tests with a body in the last frame; calls for a body add up. An algorithm
-  /// either reports all bodies, also those with no tests, or none. It counts while it draws, so
+  /// either reports all bodies, also those with no tests, or none. It counts during drawing, so
   /// that timed code does no extra work.
   virtual void tests(std::uint32_t /*body*/, std::uint32_t /*count*/) {}
 };

@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-/// Bad input or usage. The message is one line with the file or option, the fault and what would be
-/// right. Caught once, in main(); exit status 2.
+/// Bad input or usage. The message is one line with the file or option, the fault and the expected
+/// input. Caught once, in main(); exit status 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,7 +21,7 @@ class UnsupportedError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The process that ran a case crashed or exited; the message says how. The case's status becomes
+/// The process that ran a case crashed or exited, as the message says. The case's status becomes
 /// `error`.
 class HostError : public std::runtime_error {
  public:
@@ -35,7 +35,7 @@ class HardLimitError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown out of long work that the user ended. Not a std::exception: it is no error.
+/// Thrown when the user cancels long work. Not a std::exception, since it is no error.
 struct Cancelled {};
 
 /// The message of the exception being handled. Only inside a catch block.

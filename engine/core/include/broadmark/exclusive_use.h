@@ -13,10 +13,10 @@ namespace broadmark {
 /// Bullet's gDbvtMargin: the algorithms of the DBVT family change it, Bullet's physics reads it.
 inline constexpr std::string_view kBulletTreeMargin = "Bullet's tree margin";
 
-/// A lock per name, made at first use; it lasts as long as the process.
+/// One lock per name, created at first use and never destroyed.
 struct NamedLock;
 
-/// Holds the lock of that name; "" stands for no state. A thread may hold only one use of a name.
+/// Holds the lock of that name; "": no lock. A thread may hold only one use of a name.
 template <bool exclusive>
 class StateUse {
  public:
@@ -29,10 +29,10 @@ class StateUse {
   NamedLock* lock_;
 };
 
-/// While it exists no other thread uses the state. Waits for present uses to end; new SharedUses
-/// wait for it.
+/// Excludes all other uses of the state. The constructor waits for present uses to end; new
+/// SharedUses wait meanwhile.
 using ExclusiveUse = StateUse<true>;
-/// While it exists no other thread changes the state. Any number of threads may hold one.
+/// Excludes changes of the state. Any number of threads may hold one.
 using SharedUse = StateUse<false>;
 
 }  // namespace broadmark

@@ -27,14 +27,14 @@ inline constexpr NameTable kIsas{{NamedValue{Isa::scalar, "scalar"},
                                   {Isa::avx512, "avx512"}}};
 constexpr std::string_view isaName(Isa isa) { return kIsas.nameOf(isa); }
 
-/// Whether this processor (and system) supports it.
+/// Whether this processor (and system) supports the instruction set.
 bool isaSupported(Isa);
 /// The supported instruction sets, narrowest first.
 std::vector<Isa> supportedIsas();
 /// The widest supported instruction set.
 Isa bestIsa();
 
-/// Exactly `size` workers, the caller being worker 0. A benchmark wants a fixed number of threads
+/// Exactly `size` workers, the caller being worker 0. A benchmark needs a fixed number of threads
 /// with fixed shares (same answer for the same count, no stealing, no allocation per call); that,
 /// and a clean ThreadSanitizer, is why this is not a task scheduler. Given enough cores, no worker
 /// runs on the caller's.
@@ -48,10 +48,10 @@ class ThreadTeam {
   [[nodiscard]] int size() const { return static_cast<int>(threads_.size()) + 1; }
 
   /// Binds worker i, the caller being worker 0, to the core `cores[i]`. Returns whether the system
-  /// allowed it; if not, all workers may use the cores `usable`.
+  /// allowed all bindings; if not, all workers may use the cores `usable`.
   bool pin(std::span<const int> cores, std::span<const int> usable);
 
-  /// Wakes the workers ahead of work expected within half a millisecond; they spin that long. A
+  /// Wakes the workers ahead of work expected within half a millisecond, for which they spin. A
   /// wake-up takes a tenth of that, and far more in a virtual machine.
   void wake();
 
@@ -77,12 +77,12 @@ class ThreadTeam {
   };
   void start(Job);
   void avoidCallerCore();
-  void tell(unsigned generation);
-  void perform(int worker);
-  void loop(int worker);
+  void publish(unsigned generation);
+  void runJob(int worker);
+  void workerLoop(int worker);
   void stop();
 
-  int spins_;  ///< of a waiting worker, before it sleeps
+  int spins_;  ///< spins of a waiting worker before it sleeps
   Job job_;
   /// Twice the number of jobs so far; plus one after wake().
   std::atomic<unsigned> generation_{0};
@@ -91,8 +91,9 @@ class ThreadTeam {
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::vector<std::thread> threads_;
-  std::vector<int> shared_cores_;  ///< for all workers, if there are enough and none is pinned
-  int callers_core_ = -1;          ///< avoided by the other workers
+  std::vector<int>
+      shared_cores_;      ///< for all workers; empty if there are too few, or workers are pinned
+  int caller_core_ = -1;  ///< avoided by the other workers
 };
 
 /// A costly resource shared by all instances of an ExecutionContext, such as a device's context.
@@ -116,14 +117,14 @@ class ExecutionContext {
   [[nodiscard]] Isa isa() const { return isa_; }
   [[nodiscard]] int threads() const { return team_.size(); }
   ThreadTeam& team() { return team_; }
-  /// The requested compute device: its number or part of its name; "" for the first.
+  /// The requested compute device: its number, or a part of its name; "": the first.
   [[nodiscard]] const std::string& device() const { return device_; }
 
-  /// The resource of that type, made at first use.
+  /// The resource of that type, created at first use.
   template <std::derived_from<SharedResource> Resource>
   Resource& shared() {
     for (const auto& resource : resources_) {
-      if (auto* wanted = dynamic_cast<Resource*>(resource.get())) return *wanted;
+      if (auto* found = dynamic_cast<Resource*>(resource.get())) return *found;
     }
     return static_cast<Resource&>(*resources_.emplace_back(std::make_unique<Resource>(*this)));
   }

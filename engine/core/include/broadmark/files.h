@@ -1,4 +1,4 @@
-// Files: owned descriptors, whole reads, writes that never leave a half-written file behind, and
+// Files: owned descriptors, whole reads, writes that never leave a half-written file, and
 // the write sandbox.
 #pragma once
 
@@ -13,7 +13,6 @@
 
 namespace broadmark {
 
-/// Owns an open file descriptor.
 class FileDescriptor {
  public:
   explicit FileDescriptor(int fd = -1) : fd_(fd) {}
@@ -31,21 +30,21 @@ class FileDescriptor {
 
 /// Opens a regular file for reading. Throws InputError.
 FileDescriptor openForReading(const std::filesystem::path& path);
-/// An unnamed file in the temporary directory, for reading and writing; it is deleted with its
-/// descriptor. Throws InputError.
+/// Opens an unnamed file in the temporary directory, for reading and writing. It is deleted with
+/// its descriptor. Throws InputError.
 FileDescriptor unnamedFile();
 /// Reads a whole text file of at most `limit_bytes`. Throws InputError.
 std::string readTextFile(const std::filesystem::path& path,
                          std::uint64_t limit_bytes = std::uint64_t{1} << 30);
 
-/// A file that appears under its name only when complete: written to `NAME.part` beside it, synced,
+/// A file that appears under its name only when complete: written to `NAME.part`, synced,
 /// then renamed; after commit() it survives a power failure. A lock excludes other writers of the
 /// same name. Throws InputError with the path on every failure (no such directory, no permission,
-/// disc full).
+/// disk full).
 class AtomicFile {
  public:
-  /// `patience`: how long to wait for another writer of the same name.
-  explicit AtomicFile(std::filesystem::path path, std::chrono::milliseconds patience = {});
+  /// `timeout`: maximum wait for another writer of the same name.
+  explicit AtomicFile(std::filesystem::path path, std::chrono::milliseconds timeout = {});
   /// Removes the partial file unless committed.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -54,27 +53,27 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
   void commit();
-  /// Commits and hands over the open file for appending; its lock is still held.
-  FileDescriptor commitAndKeep();
+  /// Commits, and returns the open file for appending, still locked.
+  FileDescriptor commitAndRelease();
 
  private:
   std::filesystem::path path_;
   std::filesystem::path partial_;
   FileDescriptor file_;
   std::uint64_t written_ = 0;
-  std::uint64_t handed_over_ = 0;  ///< bytes that the system was already asked to store
+  std::uint64_t flushed_ = 0;  ///< bytes already submitted for writeback
   bool committed_ = false;
 };
 
-/// A file that grows part by part: each is on the disc when append() returns. The first part
+/// A file that grows part by part: each part is on disk when append() returns. The first part
 /// atomically replaces the previous contents. A lock excludes other writers. Throws InputError with
 /// the path.
 class AppendedFile {
  public:
   explicit AppendedFile(std::filesystem::path path);
-  /// Appends to an open descriptor, a pipe perhaps, which is neither locked nor emptied.
+  /// Appends to an open descriptor, such as a pipe, without locking or truncating it.
   AppendedFile(FileDescriptor file, std::filesystem::path path);
-  /// Removes a file that it created if nothing was appended.
+  /// Removes a created file if nothing was appended.
   ~AppendedFile();
   AppendedFile(const AppendedFile&) = delete;
   AppendedFile& operator=(const AppendedFile&) = delete;
@@ -83,10 +82,10 @@ class AppendedFile {
 
  private:
   std::filesystem::path path_;
-  bool made_ = false;  ///< the file did not exist before
+  bool created_ = false;  ///< the file did not exist before
   FileDescriptor file_;
-  bool begun_ = false;   ///< something was appended
-  bool stored_ = false;  ///< on a disc
+  bool started_ = false;  ///< something was appended
+  bool on_disk_ = false;  ///< not a pipe or the like
   std::uint64_t size_ = 0;
 };
 
@@ -103,12 +102,12 @@ std::size_t readAll(int fd, std::span<std::byte> bytes, std::uint64_t offset);
 /// Writes all bytes to a descriptor; errors name `path`.
 void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-/// Restricts the output paths that a foreign file may name: throws InputError unless `path` lies
-/// below `folder`, also when its links are followed, and no part of it there is hidden, as
+/// Restricts the output paths in an untrusted file: throws InputError unless `path` lies
+/// below `folder`, also after resolving links, and no part of it below `folder` is hidden, as
 /// `.bashrc` is.
 void requireBelow(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// While it exists, this process writes only paths that pass requireBelow(). At most one exists.
+/// Limits the writes of this process to paths that pass requireBelow(). At most one may exist.
 class WriteSandbox {
  public:
   explicit WriteSandbox(const std::filesystem::path& folder);

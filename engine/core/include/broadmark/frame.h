@@ -24,7 +24,7 @@ struct SceneInfo {
   std::string object_type;  ///< "Cubes"; with the same limits
   std::uint32_t objects = 0;
   std::uint32_t frames = 0;  ///< without the initial pose
-  Aabb world = {};           ///< bodies may poke out a little
+  Aabb world = {};           ///< bodies may protrude a little
   bool all_present = true;   ///< no body is ever absent
   CollisionFilter filter = {};
 
@@ -35,10 +35,10 @@ struct SceneInfo {
 struct Frame {
   std::uint32_t index = 0;      ///< 0 is the initial pose, 1…F are the frames that count
   std::span<const Aabb> boxes;  ///< by body id; kEmptyBox: absent
-  /// The bodies that moved, appeared or vanished since frame `index` - 1, whichever frame was read
-  /// last, ascending: the boxes differ in a bit. Nothing if the source does not know; it knows in
-  /// all frames or in none. Algorithms always get them, detected before the clock starts. Empty in
-  /// frame 0.
+  /// The bodies that moved, appeared or vanished since frame `index` - 1 (not since the frame read
+  /// last), ascending: their boxes differ bitwise. Empty in frame 0. nullopt if the source does not
+  /// report changes, in all frames alike. Algorithms always get them, detected before the clock
+  /// starts if necessary.
   std::optional<std::span<const std::uint32_t>> changed = {};
 
   /// The ids of the bodies that are present, ascending.
@@ -56,27 +56,27 @@ class FrameSource {
   /// Starts over and returns the initial pose (index 0).
   virtual Frame rewind() = 0;
 
-  /// The next frame, wholly in resident memory, or nothing after the last one.
+  /// The next frame, wholly in resident memory; nullopt after the last one.
   virtual std::optional<Frame> next() = 0;
 };
 
 /// Frames by index, in any order: a recording, or frames held in memory.
 class IndexedFrames : public FrameSource {
  public:
-  /// Frame `index`, from 0, the initial pose, to scene().frames; next() continues from there. Valid
+  /// Frame `index`, from 0 (the initial pose) to scene().frames; next() continues from there. Valid
   /// until the next call. Throws InputError when there is no such frame.
   Frame at(std::uint32_t index);
 
   Frame rewind() final { return at(0); }
   std::optional<Frame> next() final;
 
-  /// Its name in messages.
+  /// The name in messages.
   [[nodiscard]] virtual const std::string& name() const { return scene().name; }
 
  protected:
-  /// The boxes of frame `index`, which exists.
+  /// The boxes of frame `index`, which must exist.
   virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
-  /// The changes of the frame that was read last, as Frame::changed.
+  /// The changes of the last frame read, as Frame::changed.
   [[nodiscard]] virtual std::optional<std::span<const std::uint32_t>> changed() const { return {}; }
 
  private:

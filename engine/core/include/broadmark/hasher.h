@@ -10,7 +10,6 @@
 
 namespace broadmark {
 
-/// A 128-bit hash.
 struct HashValue {
   std::uint64_t low = 0;
   std::uint64_t high = 0;
@@ -27,7 +26,6 @@ class Hasher {
   Hasher& operator=(Hasher&&) noexcept;
 
   void add(std::span<const std::byte> bytes);
-  /// Resets the state.
   void restart();
   /// The hash of all bytes so far.
   [[nodiscard]] HashValue value() const;
@@ -39,7 +37,6 @@ class Hasher {
   std::unique_ptr<State> state_;
 };
 
-/// XXH3-128 of the bytes.
 HashValue hashOf(std::span<const std::byte> bytes);
 
 }  // namespace broadmark

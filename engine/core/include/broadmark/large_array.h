@@ -20,7 +20,7 @@ struct FreeMemory {
   void operator()(void* memory) const { std::free(memory); }
 };
 
-/// Uninitialised memory for `bytes` bytes; from the size of a huge page on in huge pages, if
+/// Allocates `bytes` uninitialised bytes; from the size of a huge page on in huge pages, if
 /// possible. Throws std::bad_alloc.
 inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   constexpr std::size_t kHugePage = std::size_t{1} << 21;
@@ -30,7 +30,7 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   if (memory == nullptr) throw std::bad_alloc();
 #if defined(MADV_HUGEPAGE)
   if (bytes >= kHugePage) {
-    // Reused memory is in small pages: releases these. On failure they stay.
+    // Reused memory may consist of small pages: releases them, if possible.
     ::madvise(memory, bytes, MADV_DONTNEED);
     ::madvise(memory, bytes, MADV_HUGEPAGE);
   }
@@ -38,7 +38,7 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   return memory;
 }
 
-/// An allocator for standard containers: large ones are in huge pages, too.
+/// An allocator for standard containers, with huge pages for large ones.
 template <class T>
 struct LargeAllocator {
   using value_type = T;
@@ -52,7 +52,7 @@ struct LargeAllocator {
 template <class T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
 
-/// A growing array of uninitialised entries. It keeps its memory when it shrinks.
+/// A growing array of uninitialised entries. Retains its memory when it shrinks.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T>);

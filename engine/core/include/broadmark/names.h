@@ -11,7 +11,6 @@
 
 namespace broadmark {
 
-/// A value and its name.
 template <class Value>
 struct NamedValue {
   Value value;
@@ -25,7 +24,7 @@ template <class Value, std::size_t size>
 struct NameTable {
   std::array<NamedValue<Value>, size> entries;
 
-  /// `value` is in the table.
+  /// Requires `value` to be in the table.
   [[nodiscard]] constexpr std::string_view nameOf(Value value) const {
     for (const auto& entry : entries) {
       if (entry.value == value) return entry.name;

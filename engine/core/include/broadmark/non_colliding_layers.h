@@ -15,7 +15,6 @@ namespace broadmark {
 /// A set of layers that collide neither with themselves nor with each other.
 class NonCollidingLayers {
  public:
-  /// An empty set.
   NonCollidingLayers() = default;
   /// Greedy: adds layers in descending order of population. Counts only `bodies`.
   NonCollidingLayers(const CollisionFilter& filter, std::span<const std::uint32_t> bodies)
@@ -35,7 +34,6 @@ class NonCollidingLayers {
     }
   }
 
-  /// The number of bodies in these layers.
   [[nodiscard]] std::size_t bodyCount() const { return body_count_; }
   [[nodiscard]] bool contains(std::uint32_t body) const { return members_[filter_.layerOf(body)]; }
   /// Whether any of the layers collides with the layer of the body.

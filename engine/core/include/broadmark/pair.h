@@ -20,7 +20,7 @@ struct Pair {
   friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
-/// Branchless arithmetic: a comparison compiles to a branch, mispredicted half of the time.
+/// Branchless: a comparison would compile to a branch, mispredicted half of the time.
 constexpr Pair orderedPair(std::uint32_t i, std::uint32_t j) {
   const std::uint32_t smaller = j ^ ((i ^ j) & (0U - std::uint32_t{i < j}));
   return {smaller, i ^ j ^ smaller};
@@ -32,7 +32,7 @@ using PairRun = std::span<const Pair>;
 using PairRuns = std::span<const PairRun>;
 
 /// The changes to the pairs since the frame before, borrowed: new pairs (began) and removed pairs
-/// (ended). Each pair once, and in only one of the two.
+/// (ended). Each pair occurs once, in only one of the two.
 struct PairEvents {
   PairRuns began;
   PairRuns ended;
@@ -44,7 +44,6 @@ constexpr std::uint64_t pairCount(PairRuns runs) {
   for (const PairRun chunk : runs) count += chunk.size();
   return count;
 }
-/// Number of events.
 constexpr std::uint64_t eventCount(const PairEvents& events) {
   return pairCount(events.began) + pairCount(events.ended);
 }
@@ -63,7 +62,7 @@ inline std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pai
 }
 
 /// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it provides
-/// uninitialised room, so that SIMD kernels can write first and count afterwards.
+/// uninitialised space, so that SIMD kernels can write first and count afterwards.
 ///
 /// Aligned to a cache line against false sharing: workers fill adjacent buffers.
 class alignas(64) PairBuffer {
@@ -78,7 +77,7 @@ class alignas(64) PairBuffer {
     ++size_;
   }
 
-  /// Room for `count` more pairs behind the present ones; valid until the next call. Written pairs
+  /// Space for `count` more pairs behind the present ones; valid until the next call. Written pairs
   /// count only after advance().
   Pair* room(std::size_t count) {
     if (size_ + count > pairs_.size()) grow(size_ + count);
@@ -89,20 +88,20 @@ class alignas(64) PairBuffer {
   /// Drops the pairs for which keep(pair) is false; preserves the order.
   template <class Keep>
   void retain(Keep keep) {
-    std::size_t kept = 0;
+    std::size_t count = 0;
     // Branchless: the outcome may be unpredictable.
     for (std::size_t i = 0; i < size_; ++i) {
       const Pair pair = pairs_[i];
-      pairs_[kept] = pair;
-      kept += keep(pair) ? 1 : 0;
+      pairs_[count] = pair;
+      count += keep(pair) ? 1 : 0;
     }
-    size_ = kept;
+    size_ = count;
   }
 
  private:
-  void grow(std::size_t wanted) {
+  void grow(std::size_t size) {
     const std::size_t capacity = pairs_.size();
-    pairs_.resize(std::max<std::size_t>({wanted, capacity + capacity / 2, 1024}));
+    pairs_.resize(std::max<std::size_t>({size, capacity + capacity / 2, 1024}));
   }
 
   LargeArray<Pair> pairs_;  ///< its size is the capacity

@@ -31,7 +31,7 @@ class PairSet {
     forEachPrefetched(pairs, [this](Pair pair) { insert(pair); });
   }
 
-  /// Fills the gaps with the last pairs. Throws std::logic_error if a pair is not in the set.
+  /// Moves the last pairs into the gaps. Throws std::logic_error if a pair is not in the set.
   void erase(PairRun pairs) {
     forEachPrefetched(pairs, [this](Pair pair) { erase(pair); });
   }

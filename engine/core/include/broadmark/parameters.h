@@ -1,4 +1,4 @@
-// Typed parameters: name, default, range and explanation are declared once, where the value is
+// Typed parameters: name, default, range and documentation are declared once, where the value is
 // stored. Command line, JSON, help and user interface are derived from them.
 #pragma once
 
@@ -22,7 +22,7 @@ struct Choice {
 /// the default.
 struct Parameter {
   std::string_view name;  ///< snake_case; its key on the command line and in JSON
-  std::string_view doc;   ///< one sentence, with the unit
+  std::string_view doc;   ///< documentation: one sentence, with the unit
   std::variant<bool*, std::int64_t*, double*, Choice*, std::string*> value;
   double min = 0;  ///< inclusive range; numbers only
   double max = 0;
@@ -30,7 +30,7 @@ struct Parameter {
 
 using ParameterVisitor = std::function<void(const Parameter&)>;
 
-/// An object with parameters. Passes each of them to `visit`, in a fixed order.
+/// An object with parameters, visited in a fixed order.
 class Parametrised {
  public:
   virtual ~Parametrised() = default;
@@ -40,32 +40,30 @@ class Parametrised {
 /// Values as text by name, as in --param KEY=VALUE.
 using ParameterValues = std::map<std::string, std::string>;
 
-/// The present name of an algorithm's parameter, for a present or former name. Commands, case names
+/// The current name of an algorithm's parameter, for a current or former name. Commands, case names
 /// and results may hold former names.
 std::string_view currentParameterName(std::string_view name);
 
 /// A parameter's value as text, which round-trips.
 std::string parameterText(const Parameter&);
-/// Its range or choices as text: "1…1000", "on|off", "cubes|spheres", "TEXT".
+/// A parameter's range or choices as text: "1…1000", "on|off", "cubes|spheres", "TEXT".
 std::string parameterRange(const Parameter&);
 
-/// The unit at the end of its explanation, "…, in seconds", abbreviated: "s"; "" if there is none.
+/// The unit at the end of a parameter's documentation, "…, in seconds", abbreviated: "s"; or "".
 std::string_view parameterUnit(const Parameter&);
 
-/// Sets `parameter` from text. Throws InputError with its name, the text and what would be right.
+/// Sets a parameter from text. Throws InputError with its name, the text and the valid range.
 void setParameter(const Parameter&, std::string_view text);
 
-/// Sets all given values. Throws InputError on an unknown name (suggesting the nearest) or a value
-/// out of range; some values may already be set then.
+/// Sets all given values. Throws InputError for an unknown name (suggesting the nearest) or a value
+/// out of range, possibly after setting some values.
 void setParameters(Parametrised&, const ParameterValues&);
 
-/// All parameters with their present values.
 ParameterValues parameterValues(Parametrised&);
-/// The entries of `values` that differ from those of `fresh`, an object with default values.
+/// The entries of `values` that differ from the values of `fresh`, an object with the defaults.
 ParameterValues changedValues(ParameterValues values, Parametrised& fresh);
-/// The entries of `values` with a parameter of the object.
+/// The entries of `values` that name a parameter of the object.
 ParameterValues applicableValues(Parametrised&, const ParameterValues& values);
-/// The names of all parameters.
 std::vector<std::string> parameterNames(Parametrised&);
 
 }  // namespace broadmark

@@ -3,13 +3,13 @@
 //
 //   BROADMARK_PLUGIN(broadmark::my_sweep::variants)
 //
-// (For physics engines see broadmark/scenes/engine_plugin.h; a library may export both.) and by
-// CMake's
+// Build it with CMake:
 //
 //   find_package(broadmark REQUIRED)
 //   broadmark_add_plugin(my_sweep my_sweep.cpp)
 //
-// The program that loads it provides all of the framework's code.
+// The loading program provides all of the framework's code. For physics engines see
+// broadmark/scenes/engine_plugin.h; a library may export both.
 #pragma once
 
 #include <vector>
@@ -62,16 +62,17 @@
 
 namespace broadmark {
 
-/// What program and library must share to exchange C++ objects: the public headers, to the byte,
-/// and the standard library's type layouts. Not inline: the loader would resolve a library's copy
-/// to the program's.
+/// The ABI that program and library must share to exchange C++ objects: the public headers, to the
+/// byte, and the standard library's type layouts. Not inline: the loader would resolve a library's
+/// copy to the program's.
 constexpr char kPluginInterface[] =
     BROADMARK_VERSION_TEXT ", headers " BROADMARK_HEADERS_HASH BROADMARK_LIBRARY_LAYOUT;
 
 /// The export of a library: entries of one type.
 template <class Entry>
 struct Plugin {
-  /// kPluginInterface of its build. Read before compatibility is known; must stay the first member.
+  /// kPluginInterface of its build. Read before compatibility is checked; must stay the first
+  /// member.
   const char* interface;
   std::vector<Entry> (*entries)();
   const char* build = nullptr;  ///< how it was built, in words; null: unknown

@@ -23,25 +23,25 @@ static_assert(sizeof(Pose) == 32);
 
 /// Half the size of the smallest axis-aligned box around a box with these half extents, rotated by
 /// `rotation`: |R|·half extents, with no margin.
-Vec3 turnedExtents(const Vec3& half_extents, const Quaternion& rotation);
+Vec3 rotatedExtents(const Vec3& half_extents, const Quaternion& rotation);
 
-/// The box with this centre and half its size.
+/// The box with this centre and these half extents.
 constexpr Aabb boxAround(const Vec3& centre, const Vec3& half) {
   return {{centre[0] - half[0], centre[1] - half[1], centre[2] - half[2], 0},
           {centre[0] + half[0], centre[1] + half[1], centre[2] + half[2], 0}};
 }
 
-/// Frames with poses as well as boxes: the input of a .posrot recording. An interface beside
-/// FrameSource, advanced by the latter's rewind() and next().
+/// Frames with poses as well as boxes: the input of a .posrot recording. A second interface of a
+/// FrameSource, advanced by its rewind() and next().
 class PoseSource {
  public:
   virtual ~PoseSource() = default;
 
-  /// The bodies' unrotated boxes in the initial pose: their size. Callable, and valid, only while
+  /// The bodies' unrotated boxes in the initial pose. Callable, and valid, only while
   /// the initial pose is the latest frame.
-  virtual std::span<const Aabb> unturnedBoxes() = 0;
+  virtual std::span<const Aabb> unrotatedBoxes() = 0;
   /// The bodies' poses in the latest frame, from frame 1 on. Valid until the next frame. Throws
-  /// InputError when only boxes are known.
+  /// InputError if the source has only boxes.
   virtual std::span<const Pose> poses() = 0;
 };
 

@@ -23,15 +23,15 @@ struct PairDigest {
 };
 PairDigest digest(PairRuns);
 
-/// All overlapping wanted pairs, ascending, by testing all pairs of bodies: O(n²). The definition.
+/// All overlapping wanted pairs, ascending, by testing all pairs of bodies: O(n²).
 std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& = {});
 
 /// No limit.
-inline constexpr std::size_t kAnyNumberOfPairs = std::numeric_limits<std::size_t>::max();
+inline constexpr std::size_t kUnlimitedPairs = std::numeric_limits<std::size_t>::max();
 
-/// The same by an exact sweep within strips of the second axis: O(n log n + candidates). Tested
-/// against bruteForcePairs. Throws InputError if there are more than `most` pairs.
+/// The same pairs by an exact sweep within strips of the second axis: O(n log n + candidates).
+/// Tested against bruteForcePairs. Throws InputError if there are more than `max_pairs` pairs.
 std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {},
-                             std::size_t most = kAnyNumberOfPairs);
+                             std::size_t max_pairs = kUnlimitedPairs);
 
 }  // namespace broadmark

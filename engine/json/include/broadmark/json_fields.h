@@ -1,4 +1,4 @@
-// Reading JSON fields with errors that name the file, the key and what would be right.
+// Reading JSON fields, with errors that name the file, the key and the expected value.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,14 +23,14 @@ using Json = nlohmann::ordered_json;
 /// Parses a text; `name` is used in messages. Throws InputError with line and column.
 Json parseJson(std::string_view text, std::string_view name);
 
-/// The same; null where parseJson() would throw.
+/// Parses a text; returns null where parseJson() would throw.
 Json jsonOrNull(std::string_view text);
 
 /// Serialises, with a final line feed; `indent` spaces a level. Replaces invalid UTF-8 (names may
 /// come from file names).
 std::string formatJson(const Json& json, int indent = 1);
 
-/// The same on one line, without a line feed.
+/// Serialises on one line, without a line feed.
 std::string compactJson(const Json& json);
 
 /// The value, or null.
@@ -39,17 +39,17 @@ Json orNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// A text for messages, control characters escaped.
+/// Escapes control characters, for messages.
 std::string onOneLine(const std::string& text);
 
 /// The schema of a JSON text: the value of its "schema" ("broadmark-results/1"), or "" if it has
-/// none. The rest is not read. Throws InputError if it is not JSON.
+/// none. Does not read the rest. Throws InputError if the text is not JSON.
 std::string jsonSchema(std::string_view text, std::string_view name);
 /// Whether a JSON text is an object with this key. Stops reading at the key. Throws InputError if
-/// it is not JSON.
+/// the text is not JSON.
 bool jsonHasKey(std::string_view text, std::string_view key, std::string_view name);
 
-/// SAX handler for JSON texts that should not be loaded as a whole. By default ignores everything;
+/// SAX handler for JSON texts that should not be loaded as a whole. Ignores all events by default;
 /// a method that returns false ends the reading.
 class JsonEvents : public nlohmann::json_sax<Json> {
  public:
@@ -109,7 +109,7 @@ class JsonFields {
   }
 
   [[nodiscard]] std::string text(const char* key) const {
-    return expect(key, at(key).is_string(), "a text").template get<std::string>();
+    return expect(key, at(key).is_string(), "a string").template get<std::string>();
   }
 
   /// The value with this name in a NameTable.
@@ -124,7 +124,7 @@ class JsonFields {
   [[nodiscard]] std::vector<std::string> texts(const char* key) const {
     std::vector<std::string> all;
     for (const Json& element : array(key)) {
-      if (!element.is_string()) throw InputError(path(key) + ": texts are expected");
+      if (!element.is_string()) throw InputError(path(key) + ": strings are expected");
       all.push_back(element.get<std::string>());
     }
     return all;
@@ -145,7 +145,7 @@ class JsonFields {
     return integerOf<Integer>(at(key), path(key), min);
   }
 
-  /// Reads a value of the type of `value`; integers must not be negative. An optional field may be
+  /// Reads a field of the type of `value`; integers must not be negative. An optional field may be
   /// missing; a map has a field per element.
   void read(const char* key, std::string& value) const { value = text(key); }
   void read(const char* key, std::vector<std::string>& value) const { value = texts(key); }
@@ -182,23 +182,23 @@ class JsonFields {
   static Integer integerOf(const Json& value, const std::string& name,
                            Integer min = std::numeric_limits<Integer>::min()) {
     constexpr auto kMax = std::numeric_limits<Integer>::max();
-    bool right = false;
+    bool is_valid = false;
     if (value.is_number_unsigned()) {
       const auto number = value.get<std::uint64_t>();
-      right = std::cmp_less_equal(number, kMax) && std::cmp_greater_equal(number, min);
+      is_valid = std::cmp_less_equal(number, kMax) && std::cmp_greater_equal(number, min);
     } else if (value.is_number_integer()) {
       const auto number = value.get<std::int64_t>();
-      right = std::cmp_less_equal(number, kMax) && std::cmp_greater_equal(number, min);
+      is_valid = std::cmp_less_equal(number, kMax) && std::cmp_greater_equal(number, min);
     }
-    if (!right) {
+    if (!is_valid) {
       throw InputError(fmt::format("{}: an integer from {} to {} is expected", name, min, kMax));
     }
     return value.get<Integer>();
   }
 
  private:
-  const Json& expect(const char* key, bool right, std::string_view what) const {
-    if (!right) throw InputError(fmt::format("{}: {} is expected", path(key), what));
+  const Json& expect(const char* key, bool is_valid, std::string_view what) const {
+    if (!is_valid) throw InputError(fmt::format("{}: {} is expected", path(key), what));
     return json_[key];
   }
 

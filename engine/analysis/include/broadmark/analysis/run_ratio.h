@@ -1,9 +1,9 @@
-// Time ratios between the cases of two runs at different times, frame by frame.
+// Time ratios between the cases of two separate runs, frame by frame.
 //
-// Each frame counts with its minimum over the repetitions, since disturbances only make it slower.
-// The machine's speed may differ between two runs, for all cases: a case's ratio is taken relative
+// Each frame counts with its minimum over the repetitions, since disturbances only slow frames
+// down. The machine's speed may differ between two runs, for all cases: a case's ratio is relative
 // to the drift, the median of the other cases' ratios, in logarithms. Cases on the same recording
-// ran alternately, so they share more of it. The interval covers the noise within the runs (a block
+// ran alternately, so they share more drift. The interval covers the noise within the runs (a block
 // bootstrap over the frames; half samples of the repetitions), or the deviation of the other cases
 // from their drift, whichever is larger.
 #pragma once
@@ -25,8 +25,8 @@ enum class Verdict {
   slower,        ///< the whole interval is above 1
   undecided,     ///< the interval is too wide
   regressed,     ///< slower by more than the tolerance, or no longer ok
-  other_status,  ///< another status; it was not ok before
-  not_ok,        ///< the same status in both, not ok: its times are meaningless
+  other_status,  ///< another status than in A, where it was not ok
+  not_ok,        ///< the same status in both, other than ok: times are meaningless
   not_timed,
   other_conditions,  ///< refused: times under such conditions are not comparable
   other_recording,
@@ -57,19 +57,19 @@ struct RunRatio {
   double after = 0;
   /// (after / before) / (1 + drift); undivided with fewer than three other cases.
   Estimate ratio;
-  /// The median slowdown of the other cases in B: 0.1 is 10 %. Nothing without other cases.
+  /// The median slowdown of the other cases in B: 0.1 is 10 %. nullopt without other cases.
   std::optional<double> drift;
 };
 
-/// A case in both runs. A may consist of several runs.
+/// A case in both A and B. A may consist of several runs.
 struct PairedCase {
   std::vector<const CaseResult*> before;
   const CaseResult* after = nullptr;
 };
 
-/// The ratios of all cases of two runs; nothing for a case without times. The variation between
-/// runs is estimated from three other cases or more, else from three baselines or more; without
-/// either it is assumed to be at least 8 %, and the drift of one or two others widens the interval.
+/// The ratios of all cases of two runs; nullopt for a case without times. The variation between
+/// runs is estimated from at least three other cases, else from at least three baselines; without
+/// either, at least 8 % is assumed, and the drift of one or two others widens the interval.
 /// The ratio of identical times is 1.
 std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> cases);
 

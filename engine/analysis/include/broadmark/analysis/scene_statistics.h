@@ -1,4 +1,4 @@
-// Properties of a scene: its density, changes, body sizes and collision filter. They decide which
+// Properties of a scene: density, changes, body sizes and collision filter. They determine which
 // broad phase suits it.
 #pragma once
 
@@ -17,21 +17,21 @@ namespace broadmark {
 struct Changes {
   double appeared = 0;
   double vanished = 0;
-  double changed = 0;  ///< these two, and moved bodies
+  double changed = 0;  ///< appeared, vanished and moved
 };
 
-/// Between two frames of the same scene.
+/// The changes between two frames of the same scene.
 Changes changesBetween(std::span<const Aabb> before, std::span<const Aabb> boxes);
 
-/// Figures of one frame, for the bodies present. The extent of a body is the longest edge of its
+/// Statistics of the bodies present in a frame. The extent of a body is the longest edge of its
 /// box. Without bodies, all are 0.
 struct FrameStatistics {
   std::uint32_t frame = 0;
   std::uint32_t bodies = 0;
-  double density = 0;  ///< sum of all boxes' volumes / volume of the world (0 if that is 0)
+  double density = 0;  ///< sum of all boxes' volumes / volume of the world; 0 if the latter is 0
   double pairs_per_body = 0;
-  std::optional<Changes> changes;  ///< nothing for frame 0
-  /// The fraction of changed boxes among bodies also present in the frame before. Nothing if there
+  std::optional<Changes> changes;  ///< nullopt for frame 0
+  /// The fraction of changed boxes among bodies also present in the frame before. nullopt if there
   /// are none.
   std::optional<double> moving_share;
   std::uint64_t outside = 0;  ///< bodies with their centre outside the world
@@ -40,7 +40,7 @@ struct FrameStatistics {
   double max_extent = 0;
 };
 
-/// For a frame with that many pairs; `before`: the boxes of the frame before it (as many; or none).
+/// The statistics of a frame with `pairs` pairs. `before`: the boxes of the frame before, or empty.
 FrameStatistics frameStatistics(const SceneInfo&, const Frame& frame, std::span<const Aabb> before,
                                 std::size_t pairs);
 
@@ -53,21 +53,20 @@ struct RangeStatistics {
   std::uint32_t max_bodies = 0;
   double density = 0;
   double pairs_per_body = 0;
-  std::optional<Changes> changes;      ///< over the frames that have them
-  std::optional<double> moving_share;  ///< over the frames that have it
+  std::optional<Changes> changes;      ///< over the frames with a value
+  std::optional<double> moving_share;  ///< over the frames with a value
   std::uint64_t max_outside = 0;       ///< maximum over the frames
   double min_extent = 0;               ///< over all frames
   double median_extent = 0;            ///< the median of the frames' medians
   double max_extent = 0;               ///< over all frames
 
-  /// Extent of the largest body divided by that of the smallest; nothing if the latter is 0.
+  /// Extent of the largest body divided by that of the smallest; nullopt if the latter is 0.
   [[nodiscard]] std::optional<double> sizeRatio() const;
 };
 
 /// Requires at least one frame.
 RangeStatistics rangeStatistics(std::span<const FrameStatistics> frames);
 
-/// Statistics of the bodies' collision filter.
 struct FilterStatistics {
   struct Layer {
     std::size_t layer = 0;
@@ -86,22 +85,20 @@ struct FilterStatistics {
   std::uint32_t tagged = 0;         ///< bodies with tags
 };
 
-/// A whole scene.
 struct SceneDescription {
   RangeStatistics initial;  ///< frame 0
   /// Frames 1…F in successive parts with lengths that differ by at most 1; none if F = 0.
   std::vector<RangeStatistics> parts;
   std::optional<RangeStatistics> overall;  ///< frames 1…F
-  /// Over frames 1…F, or frame 0 if there is no other; nothing where every pair is wanted.
+  /// Over frames 1…F, or frame 0 if there is no other; nullopt if every pair is wanted.
   std::optional<FilterStatistics> filter = {};
 };
 
-/// Reads all frames, with the memory of two of them. Frames 1…F are divided into `parts` parts, or
-/// into single frames if there are fewer. Nothing if `progress` stopped it.
+/// Reads all frames, with memory for two of them. Frames 1…F are divided into `parts` parts, or
+/// into single frames if there are fewer. Returns nullopt if `progress` stopped it.
 std::optional<SceneDescription> describe(FrameSource&, int parts = 10,
                                          const FrameProgress& progress = {});
 
-/// A recording's identity and description.
 struct DescribedRecording {
   std::string path;
   std::string hash;

@@ -1,4 +1,4 @@
-// Finds the smallest part of a recording that still fails, such as by an algorithm's wrong answer.
+// Finds the smallest failing part of a recording: with a wrong answer of an algorithm, say.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 namespace broadmark {
 
 struct ShrinkProgress {
-  std::uint64_t trials = 0;  ///< so far
-  std::size_t bodies = 0;    ///< of the smallest part found
-  std::size_t frames = 0;    ///< without the initial pose
+  std::uint64_t trials = 0;
+  std::size_t bodies = 0;  ///< of the smallest part found
+  std::size_t frames = 0;  ///< without the initial pose
 };
 
 struct ShrinkOptions {
@@ -24,32 +24,32 @@ struct ShrinkOptions {
   CancelQuery cancelled;
   /// Parts up to this size are held in memory; larger ones are read again for each trial.
   std::size_t memory_bytes = std::size_t{256} << 20;
-  ExecutorFactory make_host = makeLocalHost;  ///< where the trials of a case run
-  std::string subject = "it";  ///< in messages, the failing subject: for a case its name
+  ExecutorFactory make_executor = makeInProcessExecutor;  ///< for the trials of a case
+  std::string subject = "it";  ///< the failing subject in messages: a case's name
 };
 
 /// A failing part of a recording.
 struct ShrunkPart {
-  Part part;  ///< in the recording's ids
+  Selection part;  ///< in the recording's ids
   std::uint64_t trials = 0;
   /// Whether no single body, frame, absence, layer, world or tag can be removed; false when
   /// cancelled.
   bool minimal = false;
 };
 
-/// Whether a part of the recording fails, in its last frame.
+/// Returns whether a part of the recording fails, in its last frame.
 using FailingTrial = std::function<bool(IndexedFrames& part)>;
-/// Bodies to try first, by the recording's ids. Queried again after a trial of all bodies.
+/// Returns bodies to try first, by the recording's ids. Called again after a trial of all bodies.
 using SuspectQuery = std::function<std::vector<std::uint32_t>()>;
 
-/// Bodies to try first: those of the first wrong pair of these `bodies`; none without one.
+/// The bodies of the first wrong pair, if its ids are below `bodies`: suspects to try first.
 std::vector<std::uint32_t> suspectsOf(const FrameDifference&, std::size_t bodies);
 
-/// The smallest part of `source` with fails(part); frame `last` becomes its last one. Deterministic
-/// if the trials are. Does not use options.make_host.
+/// Finds the smallest part of `source` with fails(part); its last frame is frame `last`.
+/// Deterministic if the trials are. Does not use options.make_executor.
 ///
-/// When cancelled: the best part so far. Throws InputError if frames 0…last as a whole do not fail,
-/// or for a bad recording.
+/// Returns the best part so far when cancelled. Throws InputError if frames 0…last as a whole do
+/// not fail, or for a bad recording.
 ShrunkPart shrinkPart(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
                       const FailingTrial& fails, const ShrinkOptions& options = {});
 
@@ -58,14 +58,14 @@ struct ShrunkCase : ShrunkPart {
   FrameDifference difference;  ///< of the last frame, with the part's ids
 };
 
-/// The smallest part of `source` on which `test_case` still fails as it does in frame
-/// `known.frame`, which becomes the part's last frame. The case fails where the answer for that
-/// frame is a mismatch of any kind. Each trial is a pass of a fresh instance over all frames of a
-/// part; an exception counts as no failure. Time limits are off. Deterministic if the algorithm is.
+/// Finds the smallest part of `source` on which `test_case` still fails in frame `known.frame`, the
+/// part's last frame. The case fails if the answer for that frame is a mismatch of any kind. Each
+/// trial is a pass of a fresh instance over all frames of a part; an exception counts as no
+/// failure. Time limits are off. Deterministic if the algorithm is.
 ///
-/// The pairs listed in `known` only guide the search. When cancelled: the best part so far. Throws
-/// InputError when the case does not fail in that frame, when the algorithm is a self-check that
-/// finds no pairs, or for a bad recording.
+/// The pairs listed in `known` only guide the search. Returns the best part so far when cancelled.
+/// Throws InputError when the case does not fail in that frame, when the algorithm is a self-check
+/// that finds no pairs, or for a bad recording.
 ShrunkCase shrinkCase(const Case& test_case, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options = {});
 

@@ -28,24 +28,24 @@ struct StepResult {
   std::uint64_t pairs = 0;  ///< in the answer, duplicates included; or the number of events
 };
 
-/// Measurements of a host's passes; memory is missing where its process has other work.
+/// Measurements of an executor's passes; no memory if its process has other work.
 struct PassReport {
   std::optional<std::uint64_t> heap_bytes;  ///< allocated and not freed after the last stop()
-  std::optional<std::uint64_t> peak_bytes;  ///< growth of the peak of memory by the first pass
-  ProcessorCounts processor;  ///< over the four phases of all frames; nothing before stop()
+  std::optional<std::uint64_t> peak_bytes;  ///< growth of peak memory by the first pass
+  ProcessorCounts processor;  ///< over the four phases of all frames; empty before stop()
   bool pinned = false;        ///< each thread was bound to its own core
 };
 
-/// Holds at most one instance of a case's algorithm, and calls it. Its frames say what changed.
+/// Holds at most one instance of a case's algorithm, and calls it. Frames must list their changes.
 ///
-/// Every call forwards the algorithm's exceptions. A host outside this process also throws
+/// Every call forwards the algorithm's exceptions. An executor in another process also throws
 /// HostError when that process ended, HardLimitError when a call took too long, and Cancelled; then
-/// the instance is gone.
+/// the instance no longer exists.
 class CaseExecutor {
  public:
   virtual ~CaseExecutor() = default;
 
-  /// Makes a fresh instance at the initial pose. Returns the initialisation time in nanoseconds.
+  /// Creates an instance at the initial pose. Returns the initialisation time in nanoseconds.
   /// Throws UnsupportedError for limits of the processor or the number of bodies, and InputError
   /// for a device that does not exist.
   virtual std::int64_t start(const SceneInfo& scene, const Frame& first) = 0;
@@ -54,8 +54,8 @@ class CaseExecutor {
   /// Destroys the instance, if any.
   virtual void stop() = 0;
 
-  // For the frame that was run last. Only between start() and stop(). The first two require an
-  // answer of pairs, the third one of events; events exist for the initial pose, too.
+  // For the last frame. Only between start() and stop(). The first two require an
+  // answer of pairs, the third one of events, which exist for the initial pose, too.
   virtual PairDigest digest() = 0;
   /// Valid until the next call.
   virtual PairRuns answer() = 0;
@@ -74,14 +74,14 @@ class CaseExecutor {
   PassReport report_;
 };
 
-/// A host in this process. All passes share one ExecutionContext: threads, a device's context and
-/// its kernels are made once. Every call into the algorithm holds its traits' exclusive use; the
-/// wait for that is not timed.
+/// An executor in this process. All passes share one ExecutionContext: threads, a device's context
+/// and its kernels are created once. Every call of the algorithm holds its traits' exclusive use;
+/// the wait for that is not timed.
 class InProcessExecutor final : public CaseExecutor {
  public:
-  /// With `pin`, each of the case's threads, the calling thread included, is bound to its own core,
+  /// With `pin`, binds each of the case's threads, the calling thread included, to its own core,
   /// chosen again for every pass; unless there are too few cores, or a device's driver has threads,
-  /// too. The calling thread stays bound: for a process without other work.
+  /// too. The calling thread remains bound: for a process without other work.
   explicit InProcessExecutor(Case test_case, bool pin = false)
       : case_(std::move(test_case)), pin_(pin) {}
   ~InProcessExecutor() override;
@@ -105,17 +105,17 @@ class InProcessExecutor final : public CaseExecutor {
  private:
   FrameTimes runCounted(const Frame& frame);
   std::unique_ptr<BroadPhase> makeInstanceFor(const SceneInfo& scene) const;
-  std::uint64_t takeAnswer();
+  std::uint64_t storeAnswer();
   void pinThreads();
 
   Case case_;
   bool pin_;
-  std::vector<int> usable_cores_;  ///< before any thread was pinned
-  // Set by the first start(). Counters before threads: they count threads started after them.
+  std::vector<int> usable_cores_;  ///< before pinning
+  // Set by the first start(). Counters come first: they count threads started after them.
   std::optional<ProcessorCounters> processor_;
   std::optional<ExecutionContext> execution_;
   std::unique_ptr<BroadPhase> instance_;
-  std::uint32_t bodies_ = 0;  ///< of the algorithm's scene
+  std::uint32_t bodies_ = 0;  ///< number of bodies in the scene
   PairRuns answer_;
   PairEvents events_;
 };
@@ -123,12 +123,12 @@ class InProcessExecutor final : public CaseExecutor {
 /// Polled during long work; true ends the work.
 using CancelQuery = std::function<bool()>;
 
-/// Makes the host of a case. A host with long waits throws Cancelled soon after `cancelled` returns
-/// true.
+/// Creates the executor of a case. An executor with long waits throws Cancelled soon after
+/// `cancelled` returns true.
 using ExecutorFactory =
     std::function<std::unique_ptr<CaseExecutor>(const Case&, CancelQuery cancelled)>;
 
-/// Hosts in this process, which cannot be cancelled.
-std::unique_ptr<CaseExecutor> makeLocalHost(const Case&, CancelQuery);
+/// Creates an executor in this process, which cannot be cancelled.
+std::unique_ptr<CaseExecutor> makeInProcessExecutor(const Case&, CancelQuery);
 
 }  // namespace broadmark

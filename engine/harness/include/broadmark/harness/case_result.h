@@ -26,7 +26,7 @@ struct Repetition {
   ProcessorCounts processor = {};  ///< sums over the four phases of all frames
 };
 
-/// What is counted in each frame: pairs in the answer (for events: begun or ended), bodies with
+/// The counts of each frame: pairs in the answer (for events: begun or ended), bodies with
 /// boxes that differ from the frame before, and wrong pairs as in FrameDifference.
 enum class FrameCount { pairs, changed_bodies, missed, false_pairs, allowed_extra, invalid };
 inline constexpr NameTable kFrameCounts{{NamedValue{FrameCount::pairs, "pairs"},
@@ -41,11 +41,11 @@ using FrameCounts = ValueOfEach<FrameCount, std::uint64_t, kFrameCounts.entries.
 /// The recording a case ran on.
 struct RecordingReference {
   SceneInfo scene;
-  std::optional<std::uint64_t> seed;  ///< nothing for a recording from elsewhere
+  std::optional<std::uint64_t> seed;  ///< nullopt for a foreign recording
   std::string hash;
   std::string path;                  ///< "" if simulated for this run
   ParameterValues scene_parameters;  ///< all of them, if simulated
-  ParameterValues swept = {};        ///< where it differs from other recordings of its run
+  ParameterValues swept = {};        ///< values that differ between the recordings of a run
   /// Non-default reading options: as swept boxes; for an import also the mesh elements, …
   ParameterValues reading = {};
 };
@@ -77,7 +77,7 @@ struct CaseResult {
   // As FrameCount::pairs.
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
-  std::optional<Population> bodies;  ///< nothing where no body is ever absent
+  std::optional<Population> bodies;  ///< nullopt if no body is ever absent
   bool checked = false;              ///< if false, the counts of wrong pairs are meaningless
   /// Per frame, the maxima over all repetitions. Empty in results/1.
   std::vector<FrameCounts> frames;
@@ -97,13 +97,13 @@ struct CaseResult {
 
   /// The total times in seconds, per repetition.
   [[nodiscard]] Summary summary() const;
-  /// The mean of a phase per frame, over all repetitions; nothing without frames.
+  /// The mean of a phase per frame, over all repetitions; nullopt without frames.
   [[nodiscard]] std::optional<double> meanSeconds(Phase phase) const;
-  /// The mean per frame, over the repetitions that have it; nothing if none has.
+  /// The mean per frame, over the repetitions with this counter; nullopt if there are none.
   [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
-  /// The number of frames that were wrong in some repetition.
+  /// The number of frames with a mismatch in some repetition.
   [[nodiscard]] std::size_t mismatchedFrames() const;
-  /// Whether it ran all requested repetitions, or ended by its status. An interrupted run leaves
+  /// Whether all requested repetitions ran, or the status ended the case. An interrupted run leaves
   /// incomplete cases.
   [[nodiscard]] bool isComplete() const;
 };

@@ -1,4 +1,4 @@
-// Conditions of a case's run: what times depend on beside machine, case and recording.
+// Conditions of a case's run that affect its times, besides machine, case and recording.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@ namespace broadmark {
 
 struct Conditions {
   CheckMode check = CheckMode::full;
-  int warmup = 0;       ///< unmeasured repetitions before
+  int warmup = 0;       ///< unmeasured repetitions at the start
   int repetitions = 0;  ///< requested; an interrupted run has fewer
-  // Limits in seconds; nothing: no limit.
+  // Limits in seconds; nullopt: no limit.
   std::optional<double> frame_limit_seconds;
   std::optional<double> initialize_limit_seconds;
-  std::optional<double> call_limit_seconds;  ///< on one call into the algorithm
+  std::optional<double> call_limit_seconds;  ///< on one call of the algorithm
   bool in_process = false;                   ///< without a worker process of its own
   bool pinned = false;                       ///< each thread to its own core
   double load_average = 0;                   ///< over the last minute, at the start of the case

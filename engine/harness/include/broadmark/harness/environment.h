@@ -1,4 +1,4 @@
-// The machine and build behind measurements.
+// The machine and the build of a measurement.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,6 @@ struct Environment {
   friend bool operator==(const Environment&, const Environment&) = default;
 };
 
-/// The environment of this process.
 Environment thisEnvironment();
 
 }  // namespace broadmark

@@ -16,28 +16,27 @@ class EventAccumulator {
   EventAccumulator(EventAccumulator&&) = default;
   EventAccumulator& operator=(EventAccumulator&&) = default;
 
-  /// Empties the set.
   void clear();
-  /// Applies the events of the next frame, of a scene with that many bodies. O(k + e log ek), k
+  /// Applies the events of the next frame of a scene with `bodies` bodies. O(k + e log ek) for k
   /// pairs and e events; O(1) without events.
   void apply(const PairEvents& events, std::size_t bodies);
 
   /// All present pairs, ascending. Valid until the next call of clear() or apply().
   [[nodiscard]] PairRuns pairs() const { return {&run_, 1}; }
-  /// The impossible events of the last frame, each pair once, ascending: it began though present,
-  /// ended though absent, occurred repeatedly, or is invalid (a >= b, or a body that does not
-  /// exist). A pair that ended and began in one frame keeps its state.
+  /// The pairs of impossible events of the last frame, each once, ascending: a pair that began
+  /// though present, ended though absent, occurred repeatedly, or is invalid (a >= b, or a
+  /// nonexistent body). A pair that ended and began in one frame retains its state.
   [[nodiscard]] PairRun impossible() const { return impossible_; }
 
  private:
   std::vector<Pair> pairs_;  ///< ascending
-  PairRun run_;              ///< all of them
+  PairRun run_;              ///< view of pairs_
   std::vector<Pair> impossible_;
   // For the present frame, ascending.
   std::vector<Pair> began_;
   std::vector<Pair> ended_;
   std::vector<Pair> next_;
-  std::vector<std::pair<Pair, bool>> events_;  ///< with true for an end event
+  std::vector<std::pair<Pair, bool>> events_;  ///< true: an end event
 };
 
 }  // namespace broadmark

@@ -8,8 +8,8 @@
 namespace broadmark {
 
 /// The timed phases of a frame. A phase names the call, not the work: only the total is comparable
-/// across algorithm families. Upload and download are the times within the four calls before them
-/// that were spent on copies to and from a compute device; without a device they are 0.
+/// across algorithm families. Upload and download are the times within the first four
+/// spent on copies to and from a compute device; without a device they are 0.
 enum class Phase {
   update_objects,
   clean_cache,

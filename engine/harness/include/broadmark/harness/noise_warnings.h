@@ -1,4 +1,4 @@
-// Warnings about other load and whatever else may disturb the times of a case.
+// Warnings about other load and other disturbances of a case's times.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace broadmark {
 
-/// The machine's state while this process waits: all load then is from others.
+/// The machine's state while this process waits: all load is from other processes.
 struct MachineState {
   std::vector<int> usable_cores;  ///< by this process
   BusyShares busy;
@@ -19,8 +19,8 @@ struct MachineState {
   bool turbo = false;  ///< clock speed varies with temperature
 };
 
-/// Samples the machine for a moment; the calling thread sleeps through it.
-MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders& = {});
+/// Samples the machine for `duration`, during which the calling thread sleeps.
+MachineState sampleMachine(std::chrono::milliseconds duration, const SystemFolders& = {});
 
 /// Possible disturbances of a case's times, a sentence each; unreported conditions give none.
 std::vector<std::string> noiseWarnings(const Environment&, const MachineState&, const Case&);

@@ -1,4 +1,4 @@
-// The right answers, and their differences from given ones.
+// Correct answers, and the differences of an algorithm's answers from them.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,13 @@
 
 namespace broadmark {
 
-/// The right answer for any boxes, cached within a budget. The key is the boxes' hash and the
+/// Computes correct answers, and caches them within a budget. The key is the boxes' hash and the
 /// filter: two scenes may share an oracle, and equal frames share an answer.
 class Oracle {
  public:
   /// `max_pairs`: the limit of pairs per frame.
   explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30,
-                  std::size_t max_pairs = kAnyNumberOfPairs)
+                  std::size_t max_pairs = kUnlimitedPairs)
       : budget_bytes_(budget_bytes), max_pairs_(max_pairs) {}
 
   // Both throw InputError beyond the limit of pairs.
@@ -36,9 +36,9 @@ class Oracle {
   struct Answer {
     CollisionFilter filter;
     PairDigest digest;
-    std::optional<std::vector<Pair>> pairs;  ///< nothing if beyond the budget
+    std::optional<std::vector<Pair>> pairs;  ///< nullopt if beyond the budget
   };
-  /// With `with_pairs`, they are in the answer, or else in scratch_.
+  /// With `with_pairs`, the pairs are in the answer, or else in scratch_.
   Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter, bool with_pairs);
 
   std::map<std::pair<HashValue, const void*>, Answer> answers_;
@@ -47,15 +47,15 @@ class Oracle {
   std::size_t max_pairs_;
 };
 
-/// The differences of an answer from the right one in one frame.
+/// The differences of an answer from the correct one in one frame.
 ///
-/// An extra pair was reported though its boxes do not overlap, or though it is unwanted: it is
+/// An extra pair is reported although its boxes do not overlap, or although it is unwanted: it is
 /// *allowed* if wanted and overlapping once enlarged by the algorithm's margin, else *false*. An
-/// invalid pair is a duplicate, has a >= b, or names a body that does not exist; for events also
-/// one that is impossible according to EventAccumulator.
+/// invalid pair is a duplicate, has a >= b, or names a nonexistent body; for events also
+/// a pair of an impossible event (see EventAccumulator).
 struct FrameDifference {
   /// The maximum number of pairs listed of each kind; the counts are always complete.
-  static constexpr std::size_t kListed = 1000;
+  static constexpr std::size_t kMaxListed = 1000;
 
   int repetition = 0;
   std::uint32_t frame = 0;
@@ -76,9 +76,9 @@ struct FrameDifference {
 /// "12 missed, 0 false, 1 invalid"
 std::string mismatchText(const FrameDifference&);
 
-/// Compares an answer with the right pairs (ascending) of these boxes. `margin` as in
+/// Compares an answer with the correct pairs (ascending) of these boxes. `margin` as in
 /// BroadPhase::margin().
-FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
+FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, const Frame& frame,
                                float margin = 0, const CollisionFilter& = {});
 
 }  // namespace broadmark

@@ -18,12 +18,12 @@ inline constexpr NameTable kProcessorCounters{{NamedValue{ProcessorCounter::cycl
                                                {ProcessorCounter::branches, "branches"},
                                                {ProcessorCounter::branch_misses, "branch_misses"}}};
 
-/// One count per counter; nothing where unavailable.
+/// One count per counter; nullopt if unavailable.
 using ProcessorCounts =
     ValueOfEach<ProcessorCounter, std::optional<std::uint64_t>, kProcessorCounters.entries.size()>;
 
-/// Counts for the thread that made it, and the threads which that thread starts afterwards. Most
-/// virtual machines and containers forbid it: then all counts are nothing, without an error.
+/// Counts for the creating thread, and for the threads that it starts afterwards. Most
+/// virtual machines and containers forbid counting: then all counts are nullopt, without an error.
 class ProcessorCounters {
  public:
   /// A counter in the kernel's terms (perf_event_open).
@@ -33,9 +33,8 @@ class ProcessorCounters {
   };
   using Events = std::array<Event, kProcessorCounters.entries.size()>;
 
-  /// The processor's counters.
   ProcessorCounters();
-  /// Substitutes, for tests on machines without access to the processor's counters.
+  /// Substitute events, for tests on machines without access to the processor's counters.
   explicit ProcessorCounters(const Events& events);
 
   /// Counts during its lifetime.
@@ -50,18 +49,17 @@ class ProcessorCounters {
     const ProcessorCounters& counters_;
   };
 
-  /// Resets to zero.
   void restart();
-  /// The counts since. With more counters than hardware slots the kernel multiplexes them, and
-  /// these are estimates.
+  /// The counts since restart(). With more counters than hardware slots the kernel multiplexes
+  /// them, and the counts are estimates.
   [[nodiscard]] ProcessorCounts counts() const;
 
  private:
   /// A raw count, with the time enabled and the time running.
   struct Reading {
     std::uint64_t count = 0;
-    std::uint64_t wanted_ns = 0;
-    std::uint64_t done_ns = 0;
+    std::uint64_t enabled_ns = 0;
+    std::uint64_t running_ns = 0;
   };
   struct Counter {
     FileDescriptor file;
@@ -69,7 +67,7 @@ class ProcessorCounters {
   };
   static FileDescriptor open(const Event& event);
   static std::optional<Reading> read(const Counter& counter);
-  void tellAll(unsigned long request) const;
+  void controlAll(unsigned long request) const;
 
   std::array<Counter, kProcessorCounters.entries.size()> counters_;
 };

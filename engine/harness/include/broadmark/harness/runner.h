@@ -10,7 +10,7 @@
 
 namespace broadmark {
 
-/// "FreeFall/Cubes/N2000/F100"; with the seed "/s7" when it is known.
+/// "FreeFall/Cubes/N2000/F100"; with a known seed, also "/s7".
 std::string recordingId(const RecordingReference&);
 /// recordingId() + '/' + caseName().
 std::string caseId(const RecordingReference&, const Case&);
@@ -31,13 +31,13 @@ struct RunHooks {
   std::function<void(std::uint32_t frame)> progress;
 };
 
-/// One pass over `source`, added to `result`: times, pairs, differences, status. Throws InputError
-/// (bad recording, no such device). Returns false when cancelled: the repetition is then dropped.
-/// `measured` = false: a warm-up, checked but with its times dropped.
+/// Runs one pass over `source` and adds to `result`: times, pairs, differences, status. Throws
+/// InputError (bad recording, no such device). Returns false when cancelled, without adding the
+/// repetition. `measured` = false: a warm-up, checked but not timed.
 bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, Oracle&,
                    const RunHooks& hooks = {}, bool measured = true);
 
-/// Runs a few repetitions of one case: a shortcut for your own programs.
+/// Runs repetitions of one case: a shortcut for your own programs.
 CaseResult runCase(const Case&, FrameSource&, const RunPolicy& = {}, int repetitions = 1);
 
 }  // namespace broadmark

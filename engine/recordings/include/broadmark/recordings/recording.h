@@ -29,26 +29,26 @@ inline constexpr std::string_view kAabbsExtension = ".aabbs";
 inline constexpr std::string_view kPosrotExtension = ".posrot";
 inline constexpr std::string_view kBroadmarkExtension = ".broadmark";
 
-/// Of all formats, for help and messages.
+/// The extensions of all formats, for help and messages.
 std::vector<std::string> recordingExtensions();
-/// Of the formats with boxes, which RecordingWriter supports.
+/// The extensions of the formats with boxes, which RecordingWriter supports.
 std::vector<std::string> boxRecordingExtensions();
 
 /// Whether an .aabbs recording can hold the scene: without absent bodies or unwanted pairs.
 bool fitsAabbs(const SceneInfo&);
-/// The default format's extension for the scene: .aabbs if that can hold it, else .broadmark.
+/// The extension of the scene's default format: .aabbs if possible, else .broadmark.
 std::string_view recordingExtension(const SceneInfo&);
 
 /// Throws InputError unless the format named by the path can hold the scene.
 void requireHolds(const std::filesystem::path& path, const SceneInfo&);
 
 /// Size of a whole .aabbs or .posrot recording: 304 + 32·objects·(1 + frames); the largest uint64
-/// if that is larger. A .broadmark recording is smaller, but for its header.
+/// if the size exceeds it. A .broadmark recording is smaller except for its header.
 std::uint64_t recordingBytes(const SceneInfo&);
 
 /// "FreeFall Cubes N1000 F1000frames.aabbs"
 std::string recordingFileName(const SceneInfo&, std::string_view extension);
-/// The same with recordingExtension().
+/// The file name with recordingExtension().
 std::string recordingFileName(const SceneInfo&);
 
 /// Provenance of a recording. Stored only in .broadmark recordings.
@@ -59,7 +59,7 @@ struct RecordingOrigin {
   friend bool operator==(const RecordingOrigin&, const RecordingOrigin&) = default;
 };
 
-/// A recording of any format and length, read with the memory of one frame. Every frame is
+/// A recording of any format and length; memory is that of one frame. Every frame is
 /// validated when read. All errors are InputErrors with the file and the byte offset, or frame and
 /// body.
 class Recording : public IndexedFrames {
@@ -74,7 +74,6 @@ class Recording : public IndexedFrames {
 
   [[nodiscard]] virtual const RecordingOrigin& origin() const;
 
-  /// Size of the file.
   [[nodiscard]] std::uint64_t bytes() const { return size_; }
 
  protected:
@@ -82,12 +81,12 @@ class Recording : public IndexedFrames {
 
   /// Must be called once, with the header's contents.
   void setScene(SceneInfo scene) { scene_ = std::move(scene); }
-  /// Reads exactly `bytes.size()` bytes. Throws if the file was modified since it was opened.
+  /// Reads exactly `bytes.size()` bytes. Throws if the file was modified since opening.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:
-  /// Throws InputError if the open file was modified: earlier and later reads would be
-  /// inconsistent. (A file renamed to the same path is another file, and harmless.)
+  /// Throws InputError if the open file was modified, which would make reads inconsistent. (Another
+  /// file renamed to the same path is harmless.)
   void requireUnchanged() const;
 
   std::string name_;
@@ -108,14 +107,14 @@ class OriginalRecording : public Recording {
   void readSet(std::uint32_t index, std::span<std::byte> bytes) const;
 };
 
-/// Opens a recording in the format of the path's extension; for unknown extensions, .aabbs.
+/// Opens a recording in the format of the path's extension; unknown extensions mean .aabbs.
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path);
 
 /// Reads an .aabbs recording.
 class RecordingReader final : public OriginalRecording {
  public:
   explicit RecordingReader(const std::filesystem::path& path);
-  /// Reads from an open descriptor, which this takes over; `name` is used in messages.
+  /// Reads from an open descriptor, and takes ownership of it; `name` is used in messages.
   RecordingReader(FileDescriptor file, std::string name);
 
  private:
@@ -127,8 +126,8 @@ class RecordingReader final : public OriginalRecording {
 class RecordingFile;  // a recording of some format being written
 
 /// Writes a recording of boxes, frame by frame, to a temporary file beside `path` that finish()
-/// renames: a writer that is destroyed or killed before leaves no file that appears complete. The
-/// format is that of the path's extension; for unknown extensions it is .aabbs.
+/// renames: a writer destroyed or killed earlier leaves no file that appears complete. The format
+/// is that of the path's extension; unknown extensions mean .aabbs.
 class RecordingWriter {
  public:
   /// Throws InputError for an invalid scene (names, counts, or unsupported by .aabbs) or if the
@@ -141,13 +140,13 @@ class RecordingWriter {
   ~RecordingWriter();
 
   /// Appends one set of boxes; the first is the initial pose. Throws InputError if a box is not
-  /// finite or inverted (a simulation that blew up), except for absent bodies, or if the disc is
+  /// finite or inverted (a simulation that blew up), except for absent bodies, or if the disk is
   /// full.
   void write(std::span<const Aabb> boxes);
-  /// Appends the next frame of a source; all of its frames must be written. With Frame::changed, a
-  /// .broadmark recording only reads the changed boxes.
+  /// Appends the next frame of a source, all frames of which must be written. With Frame::changed,
+  /// the writer of a .broadmark recording reads only the changed boxes.
   void write(const Frame& frame);
-  /// Completes the recording and renames it to its path. Exactly 1 + frames sets must be written.
+  /// Completes the recording and renames it to its path. Requires exactly 1 + frames written sets.
   /// Returns the recording's hash, as Recording::hash().
   std::string finish();
   /// Completes an unnamed recording and returns a reader. The file is deleted with the reader.
@@ -157,15 +156,14 @@ class RecordingWriter {
   std::unique_ptr<RecordingFile> file_;
 };
 
-/// Called after each frame; returning false stops.
+/// Called after each frame; returns false to stop.
 using FrameProgress = std::function<bool(std::uint32_t frame)>;
-/// Receives one frame.
 using FrameSink = std::function<void(const Frame&)>;
 
 /// Passes all frames of `source`, from its initial pose on, to `sink`. Returns false when
 /// `progress` stopped it.
 bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& progress = {});
-/// Writes all frames to a recording, which is incomplete when stopped.
+/// Writes all frames to a recording, which remains incomplete if stopped.
 bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress = {});
 
 }  // namespace broadmark

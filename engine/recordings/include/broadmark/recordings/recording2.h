@@ -1,5 +1,5 @@
-// Recording 2, .broadmark: for changing worlds, and for large, mostly still ones. A frame holds
-// only changes; periodic key frames hold all boxes, and serve for seeking. docs/recordings.md
+// Recording 2, .broadmark: for changing worlds, and for large, mostly static ones. A frame holds
+// only changes; periodic key frames hold all boxes and allow seeking. docs/recordings.md
 // describes the bytes; recording.h has the writer.
 #pragma once
 
@@ -21,16 +21,16 @@ namespace broadmark {
 struct RecordedFrame {
   std::uint64_t offset;   ///< of its first byte
   std::uint32_t changed;  ///< number of changed bodies
-  std::uint32_t key;      ///< index of the last key frame up to this one, inclusive
+  std::uint32_t key;      ///< index of the last key frame up to and including this one
   HashValue hash;         ///< of its bytes
 };
 
-/// Reads a .broadmark recording. Absent bodies have kEmptyBox; Frame::changed is always known. The
-/// next frame costs its changes; any other one at most two whole frames and its changes.
+/// Reads a .broadmark recording. Absent bodies have kEmptyBox; Frame::changed is always set. The
+/// next frame costs its changes; any other frame at most two whole frames and its changes.
 class Recording2Reader final : public Recording {
  public:
   explicit Recording2Reader(const std::filesystem::path& path);
-  /// Reads from an open descriptor, which this takes over; `name` is used in messages.
+  /// Reads from an open descriptor, and takes ownership of it; `name` is used in messages.
   Recording2Reader(FileDescriptor file, std::string name);
 
   [[nodiscard]] const RecordingOrigin& origin() const override { return origin_; }
@@ -43,19 +43,19 @@ class Recording2Reader final : public Recording {
 
   /// Reads and validates header and index.
   void open();
-  /// `size`: of the header. Returns the offset of the frames.
+  /// Reads the header of `size` bytes. Returns the offset of the frames.
   std::uint64_t readHeader(std::uint64_t size, std::uint64_t index_offset);
   void readIndex(std::uint64_t offset);
   void checkIndex(std::uint64_t begin, std::uint64_t end) const;
-  /// Advances `boxes_` to a frame: a key frame, or the one after `current_`.
+  /// Advances boxes_ to a frame: a key frame, or the successor of current_.
   void readFrame(std::uint32_t index);
   void readIds(std::uint32_t index);
   void readAllBoxes(std::uint32_t index, bool follows);
   void readChangedBoxes(std::uint32_t index);
-  /// Passes the boxes of a frame to take(row, box).
-  template <class Take>
-  void readRows(std::uint32_t index, Take&& take);
-  /// Throws InputError: with a wrong checksum, if that is the cause, else with `what`.
+  /// Calls visit(row, box) for each box of a frame.
+  template <class Visit>
+  void readRows(std::uint32_t index, Visit&& visit);
+  /// Throws InputError: about the checksum if it is wrong, else with `what`.
   [[noreturn]] void fail(std::uint32_t index, const std::string& what);
   [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const std::string& what);
   [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const Aabb& box);
@@ -65,8 +65,8 @@ class Recording2Reader final : public Recording {
   LargeVector<Aabb> boxes_;
   std::vector<std::uint32_t> ids_;
   std::uint32_t changed_ = 0;             ///< number of valid entries
-  std::optional<std::uint32_t> current_;  ///< the frame that boxes_ and ids_ hold
-  std::vector<std::byte> piece_;          ///< of a frame, while it is read
+  std::optional<std::uint32_t> current_;  ///< the frame in boxes_ and ids_
+  std::vector<std::byte> piece_;          ///< part of a frame being read
   Hasher hasher_;
 };
 

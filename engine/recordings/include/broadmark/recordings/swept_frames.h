@@ -18,7 +18,7 @@ namespace broadmark {
 /// last place. kEmptyBox if `now` is absent; `before` is ignored if absent.
 Aabb sweptBox(const Aabb& before, const Aabb& now);
 
-/// Suffix of a scene's name: its boxes are swept.
+/// Suffix of the name of a scene with swept boxes.
 inline constexpr std::string_view kSweptSuffix = " swept";
 /// The name of a scene with swept boxes: "FreeFall swept".
 std::string sweptName(const SceneInfo&);
@@ -26,8 +26,8 @@ std::string sweptName(const SceneInfo&);
 /// The hash of a recording's swept boxes; `hash` is the recording's own.
 std::string sweptHash(const std::string& hash);
 
-/// The same bodies and frames with swept boxes: each box also contains the body's box in the frame
-/// before. In the initial pose it is only rounded outward.
+/// A source with swept boxes: each box also contains the body's box in the frame
+/// before. In the initial pose boxes are only rounded outward.
 class SweptFrames final : public IndexedFrames {
  public:
   explicit SweptFrames(std::unique_ptr<IndexedFrames> frames);
@@ -38,7 +38,7 @@ class SweptFrames final : public IndexedFrames {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override;
-  /// Starts with frame `index`; its boxes are not swept yet.
+  /// Starts with frame `index`, with boxes not swept yet.
   void begin(std::uint32_t index);
   /// Advances to frame `index`, the successor of `last_`.
   void advance(std::uint32_t index);
@@ -47,12 +47,12 @@ class SweptFrames final : public IndexedFrames {
 
   std::unique_ptr<IndexedFrames> frames_;
   SceneInfo scene_;
-  std::optional<std::uint32_t> last_;  ///< the frame of the following members; nothing: none
-  std::vector<Aabb> before_;           ///< boxes of `frames_`
+  std::optional<std::uint32_t> last_;  ///< the frame of the following members, if any
+  std::vector<Aabb> before_;           ///< boxes of frames_
   LargeVector<Aabb> boxes_;            ///< swept
-  bool knows_changed_ = false;
-  std::vector<std::uint32_t> moved_;       ///< bodies that changed in `frames_`
-  std::vector<std::uint32_t> candidates_;  ///< the same, in this frame or the one before
+  bool reports_changes_ = false;
+  std::vector<std::uint32_t> moved_;       ///< bodies that changed in frames_
+  std::vector<std::uint32_t> candidates_;  ///< bodies that changed in this frame or the one before
   std::vector<std::uint32_t> changed_;     ///< bodies with changed swept boxes
 };
 

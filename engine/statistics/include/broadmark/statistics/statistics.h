@@ -19,7 +19,6 @@ double quantile(std::span<const double> values, double q);
 /// Upper 97.5 % point of Student's t with `degrees` degrees of freedom (>= 1).
 double studentT975(double degrees);
 
-/// An interval around an estimate.
 struct Interval {
   double low = 0;
   double high = 0;
@@ -34,26 +33,26 @@ struct Estimate {
 /// The median of a time series with correlated neighbours, such as the frames of a run. The
 /// interval is a percentile bootstrap of circular blocks (Politis and Romano, 1992), with the
 /// blockLength() of the signs around the median, but at least 2 n^(1/3); with few blocks it is
-/// widened by Student's t. Deterministic. Not empty.
+/// widened by Student's t. Deterministic. Requires values.
 Estimate medianOfSeries(std::span<const double> values);
 /// The block length for resampling a series to estimate its mean: the rule of Politis and White
 /// (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of the series.
 std::size_t blockLength(std::span<const double> values);
 
-/// The length of blocks for a series that is judged by these values' mean: like blockLength(),
-/// but never short, since in short series noise hides the correlation.
+/// blockLength() with a minimum that grows with the length of the series, since in short series
+/// noise hides the correlation.
 std::size_t safeBlockLength(std::span<const double> values);
 /// 95 % interval around `estimate`, which is `statistic` of all `count` values, by a percentile
-/// bootstrap of circular blocks of `block` values (Politis and Romano, 1992). `statistic` is called
-/// with the indices of the values drawn. With few blocks the interval is widened by Student's t.
-/// Deterministic.
+/// bootstrap with circular blocks of `block` values (Politis and Romano, 1992). `statistic` is
+/// called with the indices of the drawn values. With few blocks the interval is widened by
+/// Student's t. Deterministic.
 Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
                           const std::function<double(std::span<const std::size_t>)>& statistic);
 
-/// 95 % confidence interval of the mean of independent values; nothing for fewer than two.
+/// 95 % confidence interval of the mean of independent values; nullopt for fewer than two.
 std::optional<Interval> confidence95(std::span<const double> values);
 
-/// The distribution of values in bins.
+/// A histogram with bins of equal width.
 struct Histogram {
   double low = 0;   ///< lower end of the first bin
   double high = 0;  ///< upper end of the last bin
@@ -62,8 +61,8 @@ struct Histogram {
   [[nodiscard]] double begin(std::size_t bin) const;
 };
 
-/// Bins from the second to the 98th percentile: the tails would compress the rest into one bin, and
-/// count to the first and the last bin. No bins if these percentiles are equal. Not empty.
+/// Bins from the second to the 98th percentile: the tails would compress the rest into one bin; the
+/// first and last bins count them. No bins if these percentiles are equal. Requires values.
 Histogram histogramOf(std::span<const double> values, std::size_t bins);
 
 /// Times of one case, in seconds. Outliers are counted, never dropped.
@@ -75,7 +74,7 @@ struct Summary {
   double min = 0;
   double stddev = 0;
   std::size_t outliers = 0;  ///< frames above the third quartile + 3 interquartile ranges
-  /// of the mean, over repetitions; nothing for a single one
+  /// Interval of the mean, over repetitions; nullopt for a single one.
   std::optional<Interval> ci95;
 };
 
