@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
-#include "broadmark/destroy.h"
+#include "broadmark/c_deleter.h"
 #include "moved_boxes.h"
 #include "variants.h"
 
@@ -116,8 +116,8 @@ class OdeSpace : public MovedBoxes {
     static_cast<OdeSpace*>(self)->pairs().add(dataOf(a).body, dataOf(b).body);
   }
 
-  std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>> space_;  ///< and its geoms
-  std::vector<dxGeom*> geoms_;                              ///< by body
+  std::unique_ptr<dxSpace, CDeleter<dSpaceDestroy>> space_;  ///< and its geoms
+  std::vector<dxGeom*> geoms_;                               ///< by body
 };
 
 class Hash final : public OdeSpace {

@@ -23,7 +23,7 @@ constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 
 fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
-/// All parameters without the path of an input, which is meaningless elsewhere.
+/// All parameters except the path of an input, which is meaningless elsewhere.
 Json parametersWithoutPath(Simulation& simulation) {
   Json json = sceneParametersJson(simulation, kBakeSchema);
   json["parameters"].erase("input");
@@ -35,7 +35,7 @@ RecordingOrigin originOf(Simulation& simulation) {
           .scene_parameters = formatJson(parametersWithoutPath(simulation))};
 }
 
-/// The sidecar of a recording with this hash. Identifies an input by its contents, not by its path.
+/// The sidecar for a recording with this hash. Identifies an input by its contents, not its path.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
   Json json = parametersWithoutPath(simulation);
   if (const std::string input = simulation.inputHash(); !input.empty()) json["input_hash"] = input;
@@ -43,7 +43,7 @@ Json sidecarJson(Simulation& simulation, const std::string& hash) {
   return json;
 }
 
-std::optional<std::string> statedHash(const Sidecar& sidecar) {
+std::optional<std::string> storedHash(const Sidecar& sidecar) {
   const auto hash = sidecar.find("hash");
   if (hash == sidecar.end() || !hash->is_string()) return {};
   return hash->get<std::string>();
@@ -81,12 +81,11 @@ class Recorder {
     if (boxes_) {
       boxes_->write(frame);
     } else if (frame.index == 0) {
-      poses_->writeBoxes(simulation.unturnedBoxes());
+      poses_->writeBoxes(simulation.unrotatedBoxes());
     } else {
       poses_->write(simulation.poses());
     }
   }
-  /// Completes the recording. Returns its hash.
   std::string finish() { return boxes_ ? boxes_->finish() : poses_->finish(); }
 
  private:
@@ -107,7 +106,7 @@ std::vector<RecorderListing> builtinRecorders() {
 bool isBaked(const fs::path& path, Simulation& simulation) {
   const Sidecar sidecar = sidecarOf(path);
   try {
-    const std::optional<std::string> hash = statedHash(sidecar);
+    const std::optional<std::string> hash = storedHash(sidecar);
     if (!hash || sidecar != Sidecar(sidecarJson(simulation, *hash))) return false;
     const auto recording = openRecordingFile(path);
     return recording->scene() == simulation.scene() && recording->hash() == *hash;
@@ -128,9 +127,9 @@ bool isIntact(const fs::path& path) {
 std::optional<std::string> bakedHash(const fs::path& recording) {
   const Sidecar sidecar = sidecarOf(recording);
   if (sidecar.empty()) return std::nullopt;
-  std::optional<std::string> hash = statedHash(sidecar);
+  std::optional<std::string> hash = storedHash(sidecar);
   if (!hash) {
-    throw InputError(fmt::format("{}: states no hash: bake again with --force",
+    throw InputError(fmt::format("{}: contains no hash: bake again with --force",
                                  sidecarPath(recording).string()));
   }
   return hash;
@@ -145,14 +144,16 @@ std::string bakedParameters(const fs::path& recording) {
 void requireBakeable(Simulation& simulation, const std::vector<fs::path>& paths) {
   for (const fs::path& path : paths) requireHolds(path, simulation.scene());
   const fs::path input = simulation.input();
-  const auto place = [](const fs::path& path) { return sidecarPath(fs::weakly_canonical(path)); };
-  std::set<fs::path> taken;
-  if (!input.empty()) taken.insert(place(input));
+  const auto sidecar_of = [](const fs::path& path) {
+    return sidecarPath(fs::weakly_canonical(path));
+  };
+  std::set<fs::path> reserved;
+  if (!input.empty()) reserved.insert(sidecar_of(input));
   for (const fs::path& path : paths) {
-    if (taken.insert(place(path)).second) continue;
+    if (reserved.insert(sidecar_of(path)).second) continue;
     throw InputError(fmt::format("{}: would overwrite {}: choose another directory", path.string(),
-                                 input.empty() ? "the .json beside another recording"
-                                               : "its own source, or the .json beside that"));
+                                 input.empty() ? "the sidecar of another recording"
+                                               : "its own source, or the sidecar of that"));
   }
 }
 

@@ -13,13 +13,13 @@ Bodies::Bodies(PhysicsEngine& engine, const SceneInfo& scene)
       poses_(scene.objects) {}
 
 std::span<const std::uint32_t> Bodies::inEngine() {
-  if (!arrived_.empty()) {
-    std::ranges::sort(arrived_);
-    const auto known = static_cast<std::ptrdiff_t>(ids_.size());
-    ids_.insert(ids_.end(), arrived_.begin(), arrived_.end());
-    std::inplace_merge(ids_.begin(), ids_.begin() + known, ids_.end());
+  if (!added_.empty()) {
+    std::ranges::sort(added_);
+    const auto old_count = static_cast<std::ptrdiff_t>(ids_.size());
+    ids_.insert(ids_.end(), added_.begin(), added_.end());
+    std::inplace_merge(ids_.begin(), ids_.begin() + old_count, ids_.end());
     ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
-    arrived_.clear();
+    added_.clear();
   }
   return ids_;
 }
@@ -30,7 +30,7 @@ PhysicsBody& Bodies::add(std::size_t id, BodyDescription description) {
   description.world = groups.world;
   bodies_[id] = &engine_->addBody(description);
   masses_[id] = description.mass;
-  arrived_.push_back(static_cast<std::uint32_t>(id));
+  added_.push_back(static_cast<std::uint32_t>(id));
   return *bodies_[id];
 }
 

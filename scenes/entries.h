@@ -15,9 +15,9 @@
 
 namespace broadmark::scenes {
 
-/// Makes an Implementation as its Interface: the `create` of an entry.
+/// Creates an Implementation, returned as its Interface: the `create` of an entry.
 template <class Interface, class Implementation, class... Arguments>
-std::unique_ptr<Interface> makeAs(Arguments... arguments) {
+std::unique_ptr<Interface> makeEntry(Arguments... arguments) {
   return std::make_unique<Implementation>(std::forward<Arguments>(arguments)...);
 }
 

@@ -33,9 +33,9 @@ constexpr struct {
     {17, {3.8, 3.8, 0.1}},  {18, {3.8, 0.1, 3.8}},  {19, {0.1, 3.8, 3.8}},   // plates
 };
 
-Edges edgesOf(std::size_t place, Random& random) {
+Edges edgesOf(std::size_t position, Random& random) {
   for (const auto& row : kFixed) {
-    if (place < row.end) return row.edges;
+    if (position < row.end) return row.edges;
   }
   Edges edges;
   for (double& edge : edges) edge = 0.803 * (0.1 + 1.8 * random.uniform());

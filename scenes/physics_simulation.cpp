@@ -20,7 +20,7 @@ std::unique_ptr<PhysicsEngine> engineOf(const std::string& id, const PhysicsSett
 
 using EngineMaker = std::function<std::unique_ptr<PhysicsEngine>()>;
 
-/// An engine for each world, made when its first body is added. A single engine would have to test
+/// An engine for each world, created with its first body. A single engine would have to test
 /// every pair of bodies at the same place, although nearly all are in different worlds.
 class WorldsEngine final : public PhysicsEngine {
  public:
@@ -119,7 +119,7 @@ Frame PhysicsSimulation::rewind() {
 std::optional<Frame> PhysicsSimulation::next() {
   if (!engine_) rewind();
   if (index_ == info_.frames) return {};
-  // Deferred to here: until now the bodies had to match the last frame.
+  // Deferred until now, since the bodies had to match the last frame.
   if (index_ > 0) act(index_);
   ++index_;
   if (!engine_->allAsleep()) {
@@ -130,13 +130,13 @@ std::optional<Frame> PhysicsSimulation::next() {
   return bodies_->record(index_);
 }
 
-std::span<const Aabb> PhysicsSimulation::unturnedBoxes() {
+std::span<const Aabb> PhysicsSimulation::unrotatedBoxes() {
   const auto boxes = bodies_->boxes();
-  unturned_.assign(boxes.begin(), boxes.end());
+  unrotated_.assign(boxes.begin(), boxes.end());
   for (const std::uint32_t id : bodies_->inEngine()) {
-    unturned_[id] = tightBox((*bodies_)[id]->shape(), {.position = bodies_->poses()[id].position});
+    unrotated_[id] = tightBox((*bodies_)[id]->shape(), {.position = bodies_->poses()[id].position});
   }
-  return unturned_;
+  return unrotated_;
 }
 
 AuthoredScene PhysicsSimulation::authoredScene() {
@@ -146,7 +146,7 @@ AuthoredScene PhysicsSimulation::authoredScene() {
       .world = info_.world,
       .parameters = AuthoredParameters(parameterValues(*this), engine_->gravity()).values(),
       .bodies = {}};
-  takeCollisions(scene, info_.filter);
+  copyCollisions(scene, info_.filter);
   const LayerMatrix layers = pushing(info_);
   for (std::uint32_t id = 0; id < bodies_->size(); ++id) {
     const std::uint8_t layer = info_.filter.groupsOf(id).layer;
@@ -160,7 +160,7 @@ AuthoredScene PhysicsSimulation::authoredScene() {
                               .angular_velocity = body->angularVelocity(),
                               .layer = layer});
     } else if (const Aabb& box = bodies_->boxes()[id]; !isEmpty(box)) {
-      scene.bodies.push_back(bodyIn(box, info_.object_type));
+      scene.bodies.push_back(bodyFilling(box, info_.object_type));
       scene.bodies.back().frozen = true;
       scene.bodies.back().layer = layer;
       pushes = false;

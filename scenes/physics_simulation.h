@@ -37,12 +37,12 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   [[nodiscard]] const SceneInfo& scene() const override;
   Frame rewind() override;
   std::optional<Frame> next() override;
-  std::span<const Aabb> unturnedBoxes() override;
+  std::span<const Aabb> unrotatedBoxes() override;
   std::span<const Pose> poses() override { return bodies_->poses(); }
   [[nodiscard]] AuthoredScene authoredScene() override;
 
  protected:
-  /// The scene for the present parameters.
+  /// The scene for the current parameters.
   [[nodiscard]] virtual SceneInfo describe() const = 0;
   [[nodiscard]] virtual std::unique_ptr<PhysicsEngine> createEngine() = 0;
   /// The layers that push each other.
@@ -55,7 +55,7 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   /// Called after frame `frame`, 1 or later, when the next one is requested.
   virtual void act(std::uint32_t /*frame*/) {}
 
-  // Both only after the first frame was requested.
+  // Valid once the first frame has been requested.
   [[nodiscard]] PhysicsEngine& engine() { return *engine_; }
   [[nodiscard]] Bodies& bodies() { return *bodies_; }
 
@@ -67,7 +67,7 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   mutable SceneInfo info_;
   std::unique_ptr<PhysicsEngine> engine_;
   std::optional<Bodies> bodies_;
-  std::vector<Aabb> unturned_;
+  std::vector<Aabb> unrotated_;
   std::uint32_t index_ = 0;
 };
 

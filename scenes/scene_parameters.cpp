@@ -30,7 +30,7 @@ void setFromJson(const Parameter& parameter, const Json& value) {
   } else if (std::holds_alternative<std::string*>(parameter.value)) {
     if (!value.is_string()) {
       throw InputError(
-          fmt::format("parameter {}: '{}' is not a text", parameter.name, textOf(value)));
+          fmt::format("parameter {}: '{}' is not a string", parameter.name, textOf(value)));
     }
     *std::get<std::string*>(parameter.value) = value.get<std::string>();
   } else if (std::holds_alternative<Choice*>(parameter.value) && value.is_string()) {
@@ -60,7 +60,7 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
   const auto text = [&](const char* key) {
     const auto field = json.find(key);
     if (field == json.end()) throw InputError(fmt::format("'{}' is missing", key));
-    if (!field->is_string()) throw InputError(fmt::format("{}: a text is expected", key));
+    if (!field->is_string()) throw InputError(fmt::format("{}: a string is expected", key));
     return field->get<std::string>();
   };
   const std::string schema = text("schema");

@@ -13,7 +13,7 @@ Json sceneParametersJson(Simulation&, std::string_view schema);
 
 /// All parameters of an object by name, numbers as numbers.
 Json parametersJson(Parametrised&);
-/// Sets them from such an object. Throws InputError for an unknown name or an invalid value.
+/// Sets parameters from such an object. Throws InputError for an unknown name or an invalid value.
 void setParametersFromJson(Parametrised&, const Json& values);
 
 }  // namespace broadmark

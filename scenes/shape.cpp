@@ -15,7 +15,7 @@ Aabb tightBox(const Shape& shape, const Pose& pose) {
     return boxAround(pose.position, {sphere->radius, sphere->radius, sphere->radius});
   }
   return boxAround(pose.position,
-                   turnedExtents(std::get<BoxShape>(shape).half_extents, pose.rotation));
+                   rotatedExtents(std::get<BoxShape>(shape).half_extents, pose.rotation));
 }
 
 }  // namespace broadmark::scenes

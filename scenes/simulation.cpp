@@ -78,14 +78,14 @@ class BuiltinSimulation final : public PhysicsSimulation {
 
 /// Throws InputError unless an engine, replay engines included, has this id.
 void requireEngine(const std::string& id) {
-  std::vector<std::string> known;
-  for (const EngineListing& listing : availableEngines()) known.push_back(listing.id);
-  if (std::ranges::find(known, id) == known.end()) {
-    throw InputError(unknownName("engine", id, known));
+  std::vector<std::string> ids;
+  for (const EngineListing& listing : availableEngines()) ids.push_back(listing.id);
+  if (std::ranges::find(ids, id) == ids.end()) {
+    throw InputError(unknownName("engine", id, ids));
   }
 }
 
-/// A replay by the engine of this id; null if it is not a replay engine. `scene` may be null: no
+/// A replay by the engine with this id; null if it is not a replay engine. `scene` may be null: no
 /// particular scene.
 std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneEntry* scene) {
   for (const ReplayEntry& entry : replayEntries()) {
@@ -121,15 +121,15 @@ std::unique_ptr<Parametrised> engineParameters(const std::string& id) {
 }
 
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene, const std::string& engine) {
-  const std::string wanted = scenes::lowerCase(scene);
-  std::vector<std::string> known;
+  const std::string name = scenes::lowerCase(scene);
+  std::vector<std::string> ids;
   for (const scenes::SceneEntry& entry : scenes::sceneEntries()) {
-    if (wanted == entry.listing.id || wanted == scenes::lowerCase(entry.listing.name)) {
+    if (name == entry.listing.id || name == scenes::lowerCase(entry.listing.name)) {
       return scenes::simulationOf(entry, engine);
     }
-    known.push_back(entry.listing.id);
+    ids.push_back(entry.listing.id);
   }
-  throw InputError(unknownName("scene", scene, known));
+  throw InputError(unknownName("scene", scene, ids));
 }
 
 }  // namespace broadmark

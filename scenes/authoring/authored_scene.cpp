@@ -30,11 +30,11 @@ bool isWithin(std::span<const float> values, float limit) {
 
 bool isSize(float edge) { return edge >= kMinEdge && edge <= kMaxEdge; }
 
-std::string outOfRange(std::string_view key, double most) {
-  return fmt::format("{}: numbers from {:g} to {:g} are expected", key, -most, most);
+std::string outOfRange(std::string_view key, double max) {
+  return fmt::format("{}: numbers from {:g} to {:g} are expected", key, -max, max);
 }
 
-/// The same, with the body's id.
+/// The fault of a body, with its id.
 std::string faultOfBody(const AuthoredBody& body, std::size_t id) {
   const std::string fault = faultOfBody(body);
   return fault.empty() ? fault : fmt::format("body {}: {}", id, fault);
@@ -51,7 +51,7 @@ std::string faultOfBody(const AuthoredBody& body) {
     return outOfRange("position", kMaxCoordinate);
   }
   float length = 0;
-  for (const float part : body.pose.rotation) length += part * part;
+  for (const float component : body.pose.rotation) length += component * component;
   if (!(std::abs(length - 1) <= kRotationTolerance)) {
     return "rotation: a quaternion x, y, z, w of unit length is expected";
   }
@@ -92,10 +92,10 @@ std::string faultOfName(std::string_view name) {
 
 std::string faultOfWorld(const Aabb& world) {
   for (int axis = 0; axis < 3; ++axis) {
-    const bool right = std::abs(world.min[axis]) <= kMaxCoordinate &&
-                       std::abs(world.max[axis]) <= kMaxCoordinate &&
-                       world.min[axis] < world.max[axis];
-    if (right) continue;
+    const bool is_valid = std::abs(world.min[axis]) <= kMaxCoordinate &&
+                          std::abs(world.max[axis]) <= kMaxCoordinate &&
+                          world.min[axis] < world.max[axis];
+    if (is_valid) continue;
     return fmt::format("world: min below max is expected on every axis, from {:g} to {:g}",
                        -kMaxCoordinate, kMaxCoordinate);
   }
@@ -122,12 +122,13 @@ void requireValid(const AuthoredScene& scene) {
 }
 
 std::string objectTypeName(const AuthoredScene& scene) {
-  const auto every = [&](auto&& holds) {
+  const auto all_shapes = [&](auto&& holds) {
     return std::ranges::all_of(scene.bodies,
                                [&](const AuthoredBody& body) { return holds(body.shape); });
   };
-  const bool spheres = every([](const Shape& s) { return std::holds_alternative<SphereShape>(s); });
-  const bool cubes = every([](const Shape& s) {
+  const bool spheres =
+      all_shapes([](const Shape& s) { return std::holds_alternative<SphereShape>(s); });
+  const bool cubes = all_shapes([](const Shape& s) {
     const Vec3 edges = edgesOf(s);
     return std::holds_alternative<BoxShape>(s) && edges[0] == edges[1] && edges[1] == edges[2];
   });

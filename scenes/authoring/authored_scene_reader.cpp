@@ -1,5 +1,5 @@
-// Authored scenes from JSON. Scenes may have millions of bodies: each is converted and freed as
-// soon as it was read, so the JSON of all bodies is never in memory. O(length).
+// Authored scenes from JSON. Scenes may have millions of bodies: each one is converted and freed as
+// soon as it has been read, so the JSON of all bodies is never in memory. O(length).
 
 #include <fmt/format.h>
 
@@ -22,26 +22,26 @@
 namespace broadmark::scenes {
 namespace {
 
-// More than any object or array except the bodies has: bounds the memory for invalid input.
+// Maximum size of objects and arrays except the bodies: bounds the memory for invalid input.
 constexpr std::size_t kMaxElements = 2000;
 constexpr std::size_t kMaxDepth = 6;
 
-// Each converts a value, or returns a description of the expected value.
+// Each function converts a value; on failure returns a description of the expected value.
 
-const char* take(const Json& json, std::string& value) {
-  if (!json.is_string()) return "a text";
+const char* convert(const Json& json, std::string& value) {
+  if (!json.is_string()) return "a string";
   value = json.get<std::string>();
   return nullptr;
 }
 
-const char* take(const Json& json, bool& value) {
+const char* convert(const Json& json, bool& value) {
   if (!json.is_boolean()) return "true or false";
   value = json.get<bool>();
   return nullptr;
 }
 
 template <std::floating_point Number>
-const char* take(const Json& json, Number& value) {
+const char* convert(const Json& json, Number& value) {
   if (!json.is_number()) return "a number";
   value = json.get<Number>();
   return nullptr;
@@ -49,30 +49,31 @@ const char* take(const Json& json, Number& value) {
 
 /// Replaces non-integers and numbers that are too large by a number that is invalid everywhere.
 template <std::unsigned_integral Number>
-const char* take(const Json& json, Number& value) {
+const char* convert(const Json& json, Number& value) {
   constexpr Number kFault = std::numeric_limits<Number>::max() - 1;
   if (!json.is_number()) return "a number";
   const auto number = json.get<double>();
-  const bool right = number >= 0 && number < kFault && number == std::floor(number);
-  value = right ? static_cast<Number>(number) : kFault;
+  const bool is_valid = number >= 0 && number < kFault && number == std::floor(number);
+  value = is_valid ? static_cast<Number>(number) : kFault;
   return nullptr;
 }
 
 template <class Number, std::size_t count>
-const char* take(const Json& json, std::array<Number, count>& values) {
-  bool right = json.is_array() && json.size() == count;
-  for (std::size_t i = 0; right && i < count; ++i) right = take(json[i], values[i]) == nullptr;
-  if (right) return nullptr;
+const char* convert(const Json& json, std::array<Number, count>& values) {
+  bool is_valid = json.is_array() && json.size() == count;
+  for (std::size_t i = 0; is_valid && i < count; ++i)
+    is_valid = convert(json[i], values[i]) == nullptr;
+  if (is_valid) return nullptr;
   return count == 4 ? "an array of four numbers" : "an array of three numbers";
 }
 
 /// For layers, or pairs of layers.
 template <class Layers>
-const char* take(const Json& json, std::vector<Layers>& values) {
-  const auto right = [&](const Json& element) {
-    return take(element, values.emplace_back()) == nullptr;
+const char* convert(const Json& json, std::vector<Layers>& values) {
+  const auto is_valid = [&](const Json& element) {
+    return convert(element, values.emplace_back()) == nullptr;
   };
-  if (json.is_array() && std::ranges::all_of(json, right)) return nullptr;
+  if (json.is_array() && std::ranges::all_of(json, is_valid)) return nullptr;
   return std::is_integral_v<Layers> ? "an array of layers"
                                     : "an array of pairs of layers, each [a, b],";
 }
@@ -82,9 +83,9 @@ class SceneReader final : public JsonEvents {
  public:
   using JsonEvents::JsonEvents;
 
-  /// The scene, once the whole text was read.
+  /// Returns the scene, once the whole text has been read.
   AuthoredScene finish() {
-    part_ = Section::other;
+    section_ = Section::other;
     std::string schema;
     require(root_, {"schema", "name", "world", "parameters", "collide", "triggers", "bodies"});
     if (!read(root_, "schema", schema)) expected("schema", kAuthoredSceneSchema);
@@ -110,7 +111,7 @@ class SceneReader final : public JsonEvents {
   bool string(string_t& value) override { return add(std::move(value)); }
 
   bool number_float(number_float_t value, const string_t& text) override {
-    // Directly from the text to float: rounding to a double first could give a neighbouring float.
+    // Directly from text to float: rounding to double first could yield a neighbouring float.
     auto nearest = static_cast<float>(value);
     std::from_chars(text.data(), text.data() + text.size(), nearest);
     const bool is_float = !open_.empty() && (open_.back()->is_array() || key_ == "sphere");
@@ -119,27 +120,29 @@ class SceneReader final : public JsonEvents {
 
   bool key(string_t& key) override {
     const Json& object = *open_.back();
-    if (open_.size() == 1) part_ = Section::other;
+    if (open_.size() == 1) section_ = Section::other;
     if (object.contains(key)) fail(fmt::format("'{}' is stated twice", onOneLine(key)));
     if (open_.size() == 1) {
-      part_ = key == "bodies" ? Section::bodies : key == "world" ? Section::world : Section::other;
+      section_ = key == "bodies"  ? Section::bodies
+                 : key == "world" ? Section::world
+                                  : Section::other;
     }
     key_ = std::move(key);
     return true;
   }
 
   bool start_object(std::size_t) override {
-    open_.push_back(&keep(Json::object()));
+    open_.push_back(&insert(Json::object()));
     return true;
   }
 
   bool start_array(std::size_t) override {
-    open_.push_back(&keep(Json::array()));
+    open_.push_back(&insert(Json::array()));
     return true;
   }
 
   bool end_object() override {
-    if (open_.size() == 3 && part_ == Section::bodies) readBody(*open_.back());
+    if (open_.size() == 3 && section_ == Section::bodies) readBody(*open_.back());
     open_.pop_back();
     return true;
   }
@@ -153,54 +156,54 @@ class SceneReader final : public JsonEvents {
   enum class Section { other, world, bodies };
 
   [[noreturn]] void fail(const std::string& what) const {
-    std::string place = name();
-    if (part_ == Section::world) place += ": world";
-    if (part_ == Section::bodies && open_.size() > 2) {
-      place += fmt::format(": body {}", scene_.bodies.size());
+    std::string location = name();
+    if (section_ == Section::world) location += ": world";
+    if (section_ == Section::bodies && open_.size() > 2) {
+      location += fmt::format(": body {}", scene_.bodies.size());
     }
-    throw InputError(fmt::format("{}: {}", place, what));
+    throw InputError(fmt::format("{}: {}", location, what));
   }
 
-  [[noreturn]] void expected(std::string_view key, std::string_view wanted) const {
-    fail(fmt::format("{}: {} is expected", key, wanted));
+  [[noreturn]] void expected(std::string_view key, std::string_view expected_value) const {
+    fail(fmt::format("{}: {} is expected", key, expected_value));
   }
 
   void requireNoFault(const std::string& fault) const {
     if (!fault.empty()) fail(fault);
   }
 
-  void require(const Json& object, const std::vector<std::string>& known) const {
+  void require(const Json& object, const std::vector<std::string>& keys) const {
     for (const auto& item : object.items()) {
-      if (std::ranges::find(known, item.key()) != known.end()) continue;
-      fail(unknownName("key", onOneLine(item.key()), known));
+      if (std::ranges::find(keys, item.key()) != keys.end()) continue;
+      fail(unknownName("key", onOneLine(item.key()), keys));
     }
   }
 
-  /// Adds a value to the present container.
-  Json& keep(Json value) {
+  /// Adds a value to the current container.
+  Json& insert(Json value) {
     if (open_.empty()) {
       if (!value.is_object()) fail("a JSON object is expected");
       return root_ = std::move(value);
     }
-    const bool is_bodies = part_ == Section::bodies && open_.size() == 1;
-    const bool is_body = part_ == Section::bodies && open_.size() == 2;
+    const bool is_bodies = section_ == Section::bodies && open_.size() == 1;
+    const bool is_body = section_ == Section::bodies && open_.size() == 2;
     if ((is_bodies && !value.is_array()) || (is_body && !value.is_object())) {
       expected("bodies", "an array of objects");
     }
-    Json& around = *open_.back();
-    if (around.size() == kMaxElements) fail(fmt::format("{}: too many values", onOneLine(key_)));
+    Json& container = *open_.back();
+    if (container.size() == kMaxElements) fail(fmt::format("{}: too many values", onOneLine(key_)));
     if (open_.size() == kMaxDepth) fail(fmt::format("{}: nested too deeply", onOneLine(key_)));
-    if (is_body && !around.empty()) {
-      around[0].clear();  // the previous body, to reuse its memory
-      return around[0];
+    if (is_body && !container.empty()) {
+      container[0].clear();  // the previous body, to reuse its memory
+      return container[0];
     }
-    if (around.is_object()) return around[key_] = std::move(value);
-    around.push_back(std::move(value));
-    return around.back();
+    if (container.is_object()) return container[key_] = std::move(value);
+    container.push_back(std::move(value));
+    return container.back();
   }
 
   bool add(Json value) {
-    keep(std::move(value));
+    insert(std::move(value));
     return true;
   }
 
@@ -209,7 +212,7 @@ class SceneReader final : public JsonEvents {
   bool read(const Json& object, const char* key, Value& value) const {
     const auto found = object.find(key);
     if (found == object.end()) return false;
-    if (const char* wanted = take(*found, value)) expected(key, wanted);
+    if (const char* expected_value = convert(*found, value)) expected(key, expected_value);
     return true;
   }
 
@@ -220,11 +223,11 @@ class SceneReader final : public JsonEvents {
     float radius = 0;
     const bool is_box = read(json, "box", edges);
     const bool is_sphere = read(json, "sphere", radius);
-    std::size_t known = std::size_t{is_box} + std::size_t{is_sphere};
+    std::size_t read_count = std::size_t{is_box} + std::size_t{is_sphere};
     visitProperties(body, [&](const char* key, auto& value, const auto& /*default*/) {
-      known += std::size_t{read(json, key, value)};
+      read_count += std::size_t{read(json, key, value)};
     });
-    if (known < json.size()) {
+    if (read_count < json.size()) {
       std::vector<std::string> keys = {"box", "sphere"};
       visitProperties(body, [&](const char* key, auto&, auto&) { keys.emplace_back(key); });
       require(json, keys);
@@ -244,14 +247,14 @@ class SceneReader final : public JsonEvents {
     if (!root_.contains("world")) return;
     const Json& world = root_["world"];
     if (!world.is_object()) expected("world", "an object");
-    part_ = Section::world;
+    section_ = Section::world;
     require(world, {"min", "max"});
     Vec3 min;
     Vec3 max;
     if (!read(world, "min", min) || !read(world, "max", max)) {
       fail("'min' and 'max' are expected");
     }
-    part_ = Section::other;
+    section_ = Section::other;
     scene_.world = {{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}};
   }
 
@@ -290,10 +293,10 @@ class SceneReader final : public JsonEvents {
   }
 
   AuthoredScene scene_;
-  Json root_;                      ///< without bodies already read
-  std::vector<Json*> open_;        ///< open objects and arrays, each nested in the previous
-  Section part_ = Section::other;  ///< of the scene
-  std::string key_;                ///< the last key
+  Json root_;                         ///< without bodies already read
+  std::vector<Json*> open_;           ///< open objects and arrays, each nested in the previous
+  Section section_ = Section::other;  ///< of the scene
+  std::string key_;                   ///< the last key
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ void append(std::string& text, const std::array<float, count>& values) {
   text += ']';
 }
 
-/// Whether it must be written although equal to the default: negative zero equals zero.
+/// Whether values must be written even if equal to the default: negative zero equals zero.
 bool hasSigns(std::span<const float> values) {
   return std::ranges::any_of(values, [](float value) { return std::signbit(value); });
 }
@@ -51,8 +51,8 @@ void append(std::string& text, const AuthoredBody& body) {
     text += "{\"box\": ";
     append(text, edgesOf(body.shape));
   }
-  visitProperties(body, [&](std::string_view key, const auto& value, const auto& standard) {
-    if (value == standard && !hasSigns(value) && key != "position") return;
+  visitProperties(body, [&](std::string_view key, const auto& value, const auto& default_value) {
+    if (value == default_value && !hasSigns(value) && key != "position") return;
     text += fmt::format(", \"{}\": ", key);
     append(text, value);
   });
@@ -60,12 +60,12 @@ void append(std::string& text, const AuthoredBody& body) {
 }
 
 /// The stated parameters on one line, numbers as numbers.
-void appendParameters(std::string& text, const ParameterValues& stated) {
-  AuthoredParameters typed(stated);
+void appendParameters(std::string& text, const ParameterValues& parameters) {
+  AuthoredParameters typed(parameters);
   const Json all = parametersJson(typed);
   std::string_view separator;
   for (const auto& [name, value] : all.items()) {
-    if (!stated.contains(name)) continue;
+    if (!parameters.contains(name)) continue;
     text += fmt::format("{}\"{}\": {}", separator, name, compactJson(value));
     separator = ", ";
   }
@@ -91,9 +91,9 @@ void appendLayers(std::string& text, const AuthoredScene& scene) {
 
 std::string formatAuthoredScene(const AuthoredScene& scene) {
   requireValid(scene);
-  constexpr std::size_t kUsualBody = 100;
+  constexpr std::size_t kTypicalBody = 100;
   std::string text;
-  text.reserve(kUsualBody * scene.bodies.size());
+  text.reserve(kTypicalBody * scene.bodies.size());
   text += fmt::format("{{\n\"schema\": \"{}\",\n\"name\": {},\n\"world\": {{\"min\": ",
                       kAuthoredSceneSchema, compactJson(scene.name));
   const auto& [min, max] = scene.world;

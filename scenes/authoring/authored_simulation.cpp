@@ -24,7 +24,9 @@ SceneListing listingOf(const AuthoredScene& scene) {
           .summary = "bodies placed in the scene editor"};
 }
 
-bool staysForGood(const AuthoredBody& body) { return body.appears == 0 && body.vanishes == kNever; }
+bool isAlwaysPresent(const AuthoredBody& body) {
+  return body.appears == 0 && body.vanishes == kNever;
+}
 
 class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument {
  public:
@@ -43,7 +45,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
   [[nodiscard]] AuthoredScene document() override {
     AuthoredScene document = scene_;
     ParameterValues values = parameters_.values();
-    // Unchanged values keep their text, so that saving again gives the same file.
+    // Preserves the text of unchanged values, so that saving again yields the same file.
     if (values != AuthoredParameters(scene_.parameters).values()) {
       document.parameters = std::move(values);
     }
@@ -70,7 +72,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
             .objects = static_cast<std::uint32_t>(scene_.bodies.size()),
             .frames = parameters_.frames(),
             .world = scene_.world,
-            .all_present = std::ranges::all_of(scene_.bodies, staysForGood),
+            .all_present = std::ranges::all_of(scene_.bodies, isAlwaysPresent),
             .filter = collisionFilterOf(scene_)};
   }
 
@@ -96,7 +98,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
       if (body.vanishes != kNever) changes_.emplace(body.vanishes, id);
     }
     for (std::size_t id = 0; id < scene_.bodies.size(); ++id) {
-      if (scene_.bodies[id].appears == 0) bringOn(id);
+      if (scene_.bodies[id].appears == 0) addBody(id);
     }
     engine().setGravity(parameters_.gravity());
   }
@@ -106,14 +108,14 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
     for (auto change = first; change != last; ++change) {
       const std::size_t id = change->second;
       if (scene_.bodies[id].appears == frame) {
-        bringOn(id);
+        addBody(id);
       } else {
         bodies().remove(id);
       }
     }
   }
 
-  void bringOn(std::size_t id) {
+  void addBody(std::size_t id) {
     const AuthoredBody& body = scene_.bodies[id];
     PhysicsBody& added = bodies().add(id, {.shape = body.shape,
                                            .mass = body.mass,
@@ -138,11 +140,11 @@ Frame advance(FrameSource& source, Frame initial, std::uint32_t index) {
   return frame;
 }
 
-/// The unrotated boxes of a source that was just rewound; empty when only boxes are known.
-std::vector<Aabb> unturnedBoxes(PoseSource* source) {
+/// The unrotated boxes of a source that was just rewound; empty if it has only boxes.
+std::vector<Aabb> unrotatedBoxes(PoseSource* source) {
   if (source == nullptr) return {};
   try {
-    const auto boxes = source->unturnedBoxes();
+    const auto boxes = source->unrotatedBoxes();
     return {boxes.begin(), boxes.end()};
   } catch (const InputError&) {  // replay of a recording of boxes
     return {};
@@ -151,7 +153,7 @@ std::vector<Aabb> unturnedBoxes(PoseSource* source) {
 
 }  // namespace
 
-AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
+AuthoredBody bodyFilling(const Aabb& box, const std::string& object_type) {
   AuthoredBody body;
   Vec3 half;
   for (int axis = 0; axis < 3; ++axis) {
@@ -167,7 +169,7 @@ AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
   return body;
 }
 
-void takeCollisions(AuthoredScene& scene, const CollisionFilter& filter) {
+void copyCollisions(AuthoredScene& scene, const CollisionFilter& filter) {
   if (!filter.worlds().empty() || !filter.tags().empty()) {
     throw InputError(fmt::format(
         "{}: its bodies have worlds or tags, which an authored scene cannot state", scene.name));
@@ -230,24 +232,24 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
         fmt::format("{}: there is no frame {}: the last one is {}", info.name, frame, info.frames));
   }
   auto* poses = dynamic_cast<PoseSource*>(&source);
-  const std::vector<Aabb> unturned = unturnedBoxes(poses);
-  const Frame wanted = advance(source, initial, frame);
+  const std::vector<Aabb> unrotated = unrotatedBoxes(poses);
+  const Frame requested = advance(source, initial, frame);
   if (auto* whole = dynamic_cast<SceneSource*>(&source)) return whole->authoredScene();
 
-  // Gravity is unknown: the bodies stay where they are.
+  // Gravity is unknown: the bodies remain at rest.
   AuthoredScene scene{
       .name = info.name, .world = info.world, .parameters = {{"gravity_y", "0"}}, .bodies = {}};
-  takeCollisions(scene, info.filter);
-  if (frame > 0 && !unturned.empty()) {
-    const auto posed = poses->poses();
-    for (std::size_t i = 0; i < unturned.size(); ++i) {
-      scene.bodies.push_back(bodyIn(unturned[i], info.object_type));
-      scene.bodies.back().pose = posed[i];
+  copyCollisions(scene, info.filter);
+  if (frame > 0 && !unrotated.empty()) {
+    const auto poses_of_frame = poses->poses();
+    for (std::size_t i = 0; i < unrotated.size(); ++i) {
+      scene.bodies.push_back(bodyFilling(unrotated[i], info.object_type));
+      scene.bodies.back().pose = poses_of_frame[i];
     }
   } else {
-    for (std::uint32_t id = 0; id < wanted.boxes.size(); ++id) {
-      if (isEmpty(wanted.boxes[id])) continue;
-      scene.bodies.push_back(bodyIn(wanted.boxes[id], info.object_type));
+    for (std::uint32_t id = 0; id < requested.boxes.size(); ++id) {
+      if (isEmpty(requested.boxes[id])) continue;
+      scene.bodies.push_back(bodyFilling(requested.boxes[id], info.object_type));
       scene.bodies.back().layer = info.filter.groupsOf(id).layer;
     }
   }

@@ -20,6 +20,6 @@ std::string faultOfLayer(std::string_view key);
 
 /// Sets the scene's colliding layers from the filter. Throws InputError if the filter has worlds or
 /// tags, which authored scenes do not support.
-void takeCollisions(AuthoredScene& scene, const CollisionFilter& filter);
+void copyCollisions(AuthoredScene& scene, const CollisionFilter& filter);
 
 }  // namespace broadmark::scenes

@@ -33,19 +33,19 @@ std::shared_ptr<const BodyIds> shared(BodyIds ids) {
   return std::make_shared<const BodyIds>(std::move(ids));
 }
 
-/// Removes these bodies, and returns them in the order of their ids.
-std::vector<AuthoredBody> taken(std::vector<AuthoredBody>& all, const BodyIds& ids) {
+/// Removes and returns these bodies, in the order of their ids.
+std::vector<AuthoredBody> extracted(std::vector<AuthoredBody>& all, const BodyIds& ids) {
   std::vector<AuthoredBody> bodies;
   bodies.reserve(ids.size());
-  std::size_t kept = 0;
+  std::size_t remaining = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (bodies.size() < ids.size() && ids[bodies.size()] == i) {
       bodies.push_back(all[i]);
     } else {
-      all[kept++] = all[i];
+      all[remaining++] = all[i];
     }
   }
-  all.resize(kept);
+  all.resize(remaining);
   return bodies;
 }
 
@@ -53,11 +53,11 @@ std::vector<AuthoredBody> taken(std::vector<AuthoredBody>& all, const BodyIds& i
 void insert(std::vector<AuthoredBody>& all, const BodyIds& ids,
             const std::vector<AuthoredBody>& bodies) {
   // In descending order, so that each body moves once.
-  std::size_t left = all.size();
+  std::size_t remaining = all.size();
   all.resize(all.size() + bodies.size());
-  for (std::size_t i = all.size(), coming = bodies.size(); coming > 0;) {
+  for (std::size_t i = all.size(), to_insert = bodies.size(); to_insert > 0;) {
     --i;
-    all[i] = ids[coming - 1] == i ? bodies[--coming] : all[--left];
+    all[i] = ids[to_insert - 1] == i ? bodies[--to_insert] : all[--remaining];
   }
 }
 
@@ -65,16 +65,16 @@ void insert(std::vector<AuthoredBody>& all, const BodyIds& ids,
 class FreeGroups {
  public:
   explicit FreeGroups(const std::vector<AuthoredBody>& bodies) {
-    for (const AuthoredBody& body : bodies) taken_.insert(body.group);
+    for (const AuthoredBody& body : bodies) used_.insert(body.group);
   }
   /// Returns the next unused number, ascending.
   std::uint32_t next() {
-    while (taken_.contains(last_)) ++last_;
+    while (used_.contains(last_)) ++last_;
     return last_++;
   }
 
  private:
-  std::unordered_set<std::uint32_t> taken_;
+  std::unordered_set<std::uint32_t> used_;
   std::uint32_t last_ = 1;
 };
 
@@ -149,8 +149,8 @@ void SceneEditor::duplicate(const Vec3& offset) {
     copies.push_back(scene_.bodies[id]);
     AuthoredBody& copy = copies.back();
     copy.pose.position = plus(copy.pose.position, offset);
-    const auto [group, fresh] = groups.try_emplace(copy.group);
-    if (fresh) group->second = free.next();
+    const auto [group, is_new] = groups.try_emplace(copy.group);
+    if (is_new) group->second = free.next();
     copy.group = group->second;
   }
   addCopies("duplicate", std::move(copies));
@@ -170,7 +170,7 @@ void SceneEditor::scale(float factor) {
 }
 
 void SceneEditor::align(std::size_t axis, Alignment alignment) {
-  const auto place = [&](const Aabb& box) {
+  const auto bound = [&](const Aabb& box) {
     switch (alignment) {
       case Alignment::low:
         return box.min[axis];
@@ -185,7 +185,7 @@ void SceneEditor::align(std::size_t axis, Alignment alignment) {
   Aabb all = kEmptyBox;
   for (const std::uint32_t id : *selection_) all = merged(all, box_of(scene_.bodies[id]));
   change("align",
-         [&](AuthoredBody& body) { body.pose.position[axis] += place(all) - place(box_of(body)); });
+         [&](AuthoredBody& body) { body.pose.position[axis] += bound(all) - bound(box_of(body)); });
 }
 
 void SceneEditor::setSize(const Vec3& edges) {
@@ -230,19 +230,19 @@ void SceneEditor::setWorld(const Aabb& world) {
 }
 
 void SceneEditor::setParameters(const ParameterValues& values) {
-  ParameterValues wanted = scene_.parameters;
-  AuthoredParameters present(wanted);
+  ParameterValues updated = scene_.parameters;
+  AuthoredParameters current(updated);
   if (const auto engine = values.find("engine");
-      engine != values.end() && engine->second != present.values().at("engine")) {
+      engine != values.end() && engine->second != current.values().at("engine")) {
     AuthoredParameters other({{"engine", engine->second}});
-    const ParameterValues known = other.values();
-    std::erase_if(wanted, [&](const auto& value) { return !known.contains(value.first); });
+    const ParameterValues parameters = other.values();
+    std::erase_if(updated, [&](const auto& value) { return !parameters.contains(value.first); });
   }
-  for (const auto& [name, value] : values) wanted[name] = value;
+  for (const auto& [name, value] : values) updated[name] = value;
   // Normalises the values' text.
-  const ParameterValues all = AuthoredParameters(wanted).values();
-  for (auto& [name, value] : wanted) value = all.at(name);
-  changeScene("change parameters", &AuthoredScene::parameters, std::move(wanted), {});
+  const ParameterValues all = AuthoredParameters(updated).values();
+  for (auto& [name, value] : updated) value = all.at(name);
+  changeScene("change parameters", &AuthoredScene::parameters, std::move(updated), {});
 }
 
 std::string SceneEditor::undoName() const { return canUndo() ? history_[done_ - 1].name : ""; }
@@ -296,11 +296,11 @@ void SceneEditor::changeScene(std::string name, Value AuthoredScene::*property, 
                               const std::string& fault) {
   if (!fault.empty()) throw InputError(fault);
   if (value == scene_.*property) return;
-  constexpr std::size_t kUsualText = 4096;  // names and parameters contain no bodies
+  constexpr std::size_t kTypicalText = 4096;  // names and parameters contain no bodies
   perform({.name = std::move(name),
            .exchange = [property,
                         value](AuthoredScene& scene) mutable { std::swap(scene.*property, value); },
-           .bytes = kUsualText,
+           .bytes = kTypicalText,
            .after = selection_});
 }
 
@@ -310,7 +310,7 @@ void SceneEditor::changePresence(std::string_view verb, SharedIds ids,
            .exchange =
                [ids, absent = std::move(absent)](AuthoredScene& scene) mutable {
                  if (absent.empty()) {
-                   absent = taken(scene.bodies, *ids);
+                   absent = extracted(scene.bodies, *ids);
                  } else {
                    insert(scene.bodies, *ids, std::exchange(absent, {}));
                  }

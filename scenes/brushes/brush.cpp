@@ -16,10 +16,10 @@
 namespace broadmark::scenes {
 namespace {
 
-/// Tolerated overlap as a fraction of a box's size: touching bodies may overlap by rounding.
+/// Tolerated overlap as a fraction of a box's size: rounding may make touching bodies overlap.
 constexpr float kTouch = 1e-4F;
 /// Positions tried per body by scattering brushes.
-constexpr int kTries = 100;
+constexpr int kMaxAttempts = 100;
 
 /// The box shrunk by the tolerance.
 Aabb core(Aabb box) {
@@ -68,12 +68,12 @@ std::size_t checkedCount(double count) {
 Paint::Paint() : object_type(choiceOf(objectTypes())) {}
 
 void Paint::visitParameters(const ParameterVisitor& visit) {
-  visit({"object_type", "what the bodies are", &object_type});
+  visit({"object_type", "shape of the bodies", &object_type});
   visit({"scale", "factor on the size of the bodies, in world units", &scale, 1e-3, 1e3});
   visit({"mass", "mass of a body", &mass, 1e-3, 1e6});
-  visit({"frozen", "whether they are immovable obstacles", &frozen});
-  visit({"overlap", "whether they may overlap each other and other bodies", &overlap});
-  visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
+  visit({"frozen", "whether the bodies are immovable obstacles", &frozen});
+  visit({"overlap", "whether the bodies may overlap each other and existing bodies", &overlap});
+  visit({"seed", "seed of the random numbers", &seed, 0, 4'294'967'295});
 }
 
 OccupiedSpace::OccupiedSpace(std::span<const AuthoredBody> bodies) {
@@ -121,25 +121,25 @@ bool OccupiedSpace::overlapsIn(const Grid& grid, int exponent, const Aabb& box) 
   return false;
 }
 
-Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const OccupiedSpace& taken,
-             std::size_t most) {
+Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const OccupiedSpace& occupied,
+             std::size_t max_bodies) {
   Random random(static_cast<std::uint64_t>(paint.seed));
   const ObjectType type = entryOf(objectTypes(), paint.object_type.value, "object type");
   const std::size_t count = checkedCount(brush.count(paint.scale * paint.scale * paint.scale));
   OccupiedSpace own;
   Stroke stroke;
-  const int tries = brush.scatters() && !paint.overlap ? kTries : 1;
-  for (std::size_t i = 0; i < std::min(count, most); ++i) {
+  const int attempts = brush.scatters() && !paint.overlap ? kMaxAttempts : 1;
+  for (std::size_t i = 0; i < std::min(count, max_bodies); ++i) {
     AuthoredBody body;
     body.shape = type.shape(i, paint.scale, random);
     body.mass = paint.mass;
     body.frozen = paint.frozen;
     bool placed = false;
-    for (int attempt = 0; attempt < tries && !placed; ++attempt) {
-      const Vec3 place = brush.place(i, random);
+    for (int attempt = 0; attempt < attempts && !placed; ++attempt) {
+      const Vec3 offset = brush.place(i, random);
       for (std::size_t axis = 0; axis < 3; ++axis)
-        body.pose.position[axis] = at[axis] + place[axis];
-      if (!paint.overlap && (taken.overlaps(body) || own.overlaps(body))) continue;
+        body.pose.position[axis] = at[axis] + offset[axis];
+      if (!paint.overlap && (occupied.overlaps(body) || own.overlaps(body))) continue;
       placed = true;
       if (!paint.overlap) own.add(body);
       stroke.bodies.push_back(body);

@@ -44,7 +44,7 @@ class BallBrush final : public CountedBrush<100> {
 };
 
 using Size = std::array<double, 3>;  ///< of a box around the painted point
-constexpr Size kUsualSize = {10, 10, 10};
+constexpr Size kDefaultSize = {10, 10, 10};
 
 void visitSize(Size& size, const ParameterVisitor& visit) {
   visit({"size_x", "size of the box along x, in world units", &size[0], 1e-3, 1e6});
@@ -73,14 +73,14 @@ class BoxBrush final : public CountedBrush<100> {
   [[nodiscard]] bool scatters() const override { return true; }
 
  private:
-  Size size_ = kUsualSize;
+  Size size_ = kDefaultSize;
 };
 
 /// Random bodies in a box, as many as its density requires.
 class RandomBrush final : public Brush {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"density", "share of the box that bodies of unit shape and this scale fill", &density_,
+    visit({"density", "share of the box filled by bodies of unit shape and this scale", &density_,
            1e-6, 1});
     visitSize(size_, visit);
   }
@@ -94,19 +94,19 @@ class RandomBrush final : public Brush {
 
  private:
   double density_ = 0.1;
-  Size size_ = kUsualSize;
+  Size size_ = kDefaultSize;
 };
 
 class LineBrush final : public CountedBrush<10> {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
     CountedBrush::visitParameters(visit);
-    visit(
-        {"step_x", "way from one body to the next along x, in world units", &step_[0], -1e6, 1e6});
-    visit(
-        {"step_y", "way from one body to the next along y, in world units", &step_[1], -1e6, 1e6});
-    visit(
-        {"step_z", "way from one body to the next along z, in world units", &step_[2], -1e6, 1e6});
+    visit({"step_x", "distance from one body to the next along x, in world units", &step_[0], -1e6,
+           1e6});
+    visit({"step_y", "distance from one body to the next along y, in world units", &step_[1], -1e6,
+           1e6});
+    visit({"step_z", "distance from one body to the next along z, in world units", &step_[2], -1e6,
+           1e6});
   }
   [[nodiscard]] Vec3 place(std::size_t index, Random&) const override {
     Vec3 place;
@@ -152,14 +152,14 @@ class LatticeBrush final : public Brush {
 }  // namespace
 
 std::vector<BrushEntry> brushEntries() {
-  return {{{"single", "one body"}, makeAs<Brush, SingleBrush>},
-          {{"ball", "bodies at random in a ball"}, makeAs<Brush, BallBrush>},
-          {{"box", "bodies at random in a box"}, makeAs<Brush, BoxBrush>},
-          {{"line", "bodies in a row, beginning at the point"}, makeAs<Brush, LineBrush>},
-          {{"lattice", "bodies in rows, columns and layers around the point"},
-           makeAs<Brush, LatticeBrush>},
-          {{"random", "as many bodies, at random in a box, as fill it to a density"},
-           makeAs<Brush, RandomBrush>}};
+  return {
+      {{"single", "one body"}, makeEntry<Brush, SingleBrush>},
+      {{"ball", "bodies at random in a ball"}, makeEntry<Brush, BallBrush>},
+      {{"box", "bodies at random in a box"}, makeEntry<Brush, BoxBrush>},
+      {{"line", "bodies in a row, starting at the point"}, makeEntry<Brush, LineBrush>},
+      {{"lattice", "bodies in rows, columns and layers around the point"},
+       makeEntry<Brush, LatticeBrush>},
+      {{"random", "bodies at random in a box, up to a density"}, makeEntry<Brush, RandomBrush>}};
 }
 
 }  // namespace broadmark::scenes

@@ -1,7 +1,7 @@
-// Boids: birds of a flock instead of bodies under forces. Boids keep a distance from neighbours,
-// align with them and stay near them, at about their launch speeds. Bodies do not collide; they
-// avoid walls and never pass them. O(n) per step: neighbours are found in a uniform grid, and a
-// boid follows at most kMaxNeighbours.
+// Boids: birds of a flock instead of bodies under forces. Boids keep their distance from
+// neighbours, align with them and stay near them, at about their launch speeds. Bodies do not
+// collide; they avoid walls and never pass them. O(n) per step: neighbours are found in a uniform
+// grid, and a boid follows at most kMaxNeighbours.
 //
 // C. Reynolds: Flocks, Herds, and Schools: A Distributed Behavioral Model. SIGGRAPH 1987.
 // M. Teschner et al.: Optimized Spatial Hashing for Collision Detection of Deformable Objects.
@@ -23,13 +23,12 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Sufficient in dense flocks: birds follow far fewer.
+/// Sufficient for dense flocks: real birds follow far fewer.
 constexpr int kMaxNeighbours = 64;
 
 Vector3f toEigen(const Vec3& v) { return Vector3f(v.data()); }
 Vec3 fromEigen(const Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Half the edges of the tight box.
 Vector3f halfExtents(const Shape& shape, const Pose& pose) {
   const Aabb box = tightBox(shape, pose);
   return (Vector3f(box.max.data()) - Vector3f(box.min.data())) / 2;
@@ -74,7 +73,7 @@ class Boid : public PhysicsBody {
   [[nodiscard]] const Vector3f& velocity() const { return velocity_; }
   /// The mean edge of its unrotated box.
   [[nodiscard]] double size() const { return size_; }
-  /// The launch speed, to which it tends.
+  /// The launch speed, which the boid tends to keep.
   [[nodiscard]] float cruisingSpeed() const { return cruising_speed_; }
 
   /// Flies with this velocity and turns into its direction.
@@ -176,21 +175,22 @@ class BoidsEngine final : public PhysicsEngine {
   explicit BoidsEngine(const PhysicsSettings& settings) : settings_(settings) {}
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"sight", "how far a boid sees its neighbours, in mean body sizes", &sight_, 1e-3, 1e3});
+    visit({"sight", "distance at which a boid sees neighbours, in mean body sizes", &sight_, 1e-3,
+           1e3});
     visit({"elbow_room", "distance that a boid keeps from others, in mean body sizes", &elbow_room_,
            0, 1e3});
-    visit({"separation", "how strongly it keeps that distance, per second", &separation_, 0, 100});
-    visit({"alignment", "how strongly it takes on the velocity of its neighbours, per second",
+    visit({"separation", "strength of keeping that distance, per second", &separation_, 0, 100});
+    visit({"alignment", "strength of matching the velocity of its neighbours, per second",
            &alignment_, 0, 100});
-    visit({"cohesion", "how strongly it draws near to the middle of its neighbours, per second",
+    visit({"cohesion", "strength of approaching the centre of its neighbours, per second",
            &cohesion_, 0, 100});
-    visit({"foresight", "time before a wall would be met that a boid starts to turn, in seconds",
+    visit({"foresight", "time before reaching a wall at which a boid starts to turn, in seconds",
            &foresight_, 1e-3, 100});
-    visit({"min_speed", "least speed, as a multiple of that at launch", &min_speed_, 0, 1});
-    visit({"max_speed", "largest speed, as a multiple of that at launch", &max_speed_, 1, 100});
+    visit({"min_speed", "minimum speed, as a multiple of the launch speed", &min_speed_, 0, 1});
+    visit({"max_speed", "maximum speed, as a multiple of the launch speed", &max_speed_, 1, 100});
   }
 
-  /// Boids pass through each other, whatever their layers.
+  /// No effect: boids pass through each other.
   void setLayers(const LayerMatrix&) override {}
   PhysicsBody& addBody(const BodyDescription& description) override {
     return bodies_.add(description);
@@ -234,13 +234,14 @@ class BoidsEngine final : public PhysicsEngine {
       const Boid& boid = *boids_[i];
       if (boid.asleep()) continue;
       const Vector3f acceleration =
-          gravity_ + boid.cruisingSpeed() * (amongOthers(i, sight, elbow_room) + offTheWalls(boid));
-      velocities_[i] = atFlyingSpeed(boid.velocity() + seconds * acceleration, boid);
+          gravity_ +
+          boid.cruisingSpeed() * (flockSteering(i, sight, elbow_room) + wallSteering(boid));
+      velocities_[i] = clampedSpeed(boid.velocity() + seconds * acceleration, boid);
     }
   }
 
-  /// The three rules: an acceleration per cruising speed.
-  [[nodiscard]] Vector3f amongOthers(std::size_t self, float sight, float elbow_room) const {
+  /// The three boids rules: an acceleration per cruising speed.
+  [[nodiscard]] Vector3f flockSteering(std::size_t self, float sight, float elbow_room) const {
     const Boid& boid = *boids_[self];
     Vector3f away = Vector3f::Zero();
     Vector3f velocities = Vector3f::Zero();
@@ -269,27 +270,27 @@ class BoidsEngine final : public PhysicsEngine {
     return steering;
   }
 
-  /// Steers more strongly the nearer a wall is: an acceleration per cruising speed.
-  [[nodiscard]] Vector3f offTheWalls(const Boid& boid) const {
+  /// Steers away from walls, the more the nearer: an acceleration per cruising speed.
+  [[nodiscard]] Vector3f wallSteering(const Boid& boid) const {
     const auto foresight = static_cast<float>(foresight_);
-    const float heeded = foresight * boid.cruisingSpeed();
+    const float range = foresight * boid.cruisingSpeed();
     const Vector3f half = halfExtents(boid.shape(), boid.pose());
     Vector3f steering = Vector3f::Zero();
     for (const HalfSpace& wall : walls_) {
       const Vector3f normal = toEigen(wall.normal);
       const float gap = depthInside(boid, wall) - normal.cwiseAbs().dot(half);
       // Three times the deceleration that would stop a boid flying straight at the wall.
-      if (gap < heeded) steering += 3 / foresight * (1 - std::max(gap, 0.0F) / heeded) * normal;
+      if (gap < range) steering += 3 / foresight * (1 - std::max(gap, 0.0F) / range) * normal;
     }
     return steering;
   }
 
-  [[nodiscard]] Vector3f atFlyingSpeed(const Vector3f& velocity, const Boid& boid) const {
+  [[nodiscard]] Vector3f clampedSpeed(const Vector3f& velocity, const Boid& boid) const {
     const float speed = velocity.norm();
     if (speed == 0) return boid.velocity();
-    const float wanted = std::clamp(speed, static_cast<float>(min_speed_) * boid.cruisingSpeed(),
+    const float target = std::clamp(speed, static_cast<float>(min_speed_) * boid.cruisingSpeed(),
                                     static_cast<float>(max_speed_) * boid.cruisingSpeed());
-    return wanted / speed * velocity;
+    return target / speed * velocity;
   }
 
   void fly(float seconds) {
@@ -306,9 +307,9 @@ class BoidsEngine final : public PhysicsEngine {
     for (const float share : {1.0F, 0.0F}) {
       for (const HalfSpace& wall : walls_) {
         const Vector3f normal = toEigen(wall.normal);
-        const float missing = share * normal.cwiseAbs().dot(half) - depthInside(boid, wall);
-        if (missing <= 0) continue;
-        boid.push(missing * normal);
+        const float penetration = share * normal.cwiseAbs().dot(half) - depthInside(boid, wall);
+        if (penetration <= 0) continue;
+        boid.push(penetration * normal);
         boid.slideAlong(normal);
       }
     }
@@ -343,7 +344,7 @@ class BoidsEngine final : public PhysicsEngine {
 EngineEntry entry() {
   return {{"boids", "a flock: bodies follow their neighbours and pass through each other",
            Dynamics::scripted},
-          makeAs<PhysicsEngine, BoidsEngine>};
+          makeEntry<PhysicsEngine, BoidsEngine>};
 }
 
 }  // namespace broadmark::scenes::boids_engine

@@ -1,8 +1,8 @@
 // Rigid bodies by Bullet (single precision): dynamic AABB trees, sequential impulses.
 //
-// This engine never changes Bullet's process-wide settings, so several worlds can coexist. One of
-// them, the margin of its trees, is changed by algorithms of the DBVT family. Bullet reads it
-// whenever a body's box changes, so such calls hold a SharedUse.
+// This engine never changes Bullet's process-wide settings, so worlds can coexist. But the
+// algorithms of the DBVT family change one of them, the tree margin. Bullet reads it whenever a
+// body's box changes, so calls that change a box hold a SharedUse.
 
 #include <btBulletDynamicsCommon.h>
 
@@ -63,9 +63,9 @@ btVector3 wallPoint(const btSphereShape& sphere, int, const btVector3& into_wall
   return sphere.getRadius() * into_wall;
 }
 
-/// Contacts of a body with a wall: one for each point that may reach the wall in the next step. So
-/// the solver stops even fast bodies. (Bullet's own algorithm finds only the nearest point, and
-/// only after it touches.)
+/// Contacts of a body with a wall: one for each point that may reach the wall in the next step, so
+/// that the solver stops even fast bodies. (Bullet's own algorithm finds only the nearest point,
+/// and only once it touches.)
 template <class BodyShape>
 class WallContact final : public btCollisionAlgorithm {
  public:
@@ -155,41 +155,41 @@ class WallContact final : public btCollisionAlgorithm {
 };
 
 /// Supported bodies are held after this time of stillness, in seconds.
-constexpr btScalar kHoldAfter = 0.5F;
+constexpr btScalar kStillTime = 0.5F;
 /// Radius for stillness, as a fraction of a free fall of that time.
-constexpr btScalar kStillShare = 0.25F;
+constexpr btScalar kStillRadius = 0.25F;
 /// A body is supported if contacts carry at least this fraction of its weight. The fraction varies
 /// in large piles.
-constexpr btScalar kCarriedShare = 0.25F;
+constexpr btScalar kMinSupport = 0.25F;
 /// A body is not held if its velocities would move it out of its radius within this time, in
 /// seconds. Short, since the velocities of still bodies fluctuate.
-constexpr btScalar kLeavesWithin = 0.1F;
-/// The same beside moving bodies: what they push must stay free.
-constexpr btScalar kPushedWithin = kHoldAfter;
+constexpr btScalar kLeaveTime = 0.1F;
+/// The same for a body that touches moving bodies, which must be able to push it.
+constexpr btScalar kLeaveTimeIfPushed = kStillTime;
 
-/// The duration of a body's stillness: its positions stay within a radius. Velocities are a poor
+/// Tracks how long a body has been still, within a radius of a pose. Velocities are a poor
 /// criterion: with few iterations bodies of a large pile jitter, and sink slowly into those below.
 class SleepTracker {
  public:
   void update(const btRigidBody& body, btScalar time_step) {
     pose_ = body.getWorldTransform();
-    if (distance(body, pose_, place_) <= reachOf(body)) {
-      lasted_ += time_step;
+    if (distance(body, pose_, anchor_) <= reachOf(body)) {
+      still_time_ += time_step;
       return;
     }
-    place_ = pose_;
-    lasted_ = 0;
+    anchor_ = pose_;
+    still_time_ = 0;
   }
 
-  /// Call when the body was moved or launched from outside.
-  void end() { lasted_ = 0; }
+  /// Must be called when the caller moves or launches the body.
+  void reset() { still_time_ = 0; }
 
-  [[nodiscard]] bool lasts() const { return lasted_ >= kHoldAfter; }
+  [[nodiscard]] bool isStill() const { return still_time_ >= kStillTime; }
   /// The pose in the last update.
   [[nodiscard]] const btTransform& pose() const { return pose_; }
 
   /// Whether a still body's velocities would move it out of its radius within this time.
-  static bool endsWithin(btScalar time, const btRigidBody& body) {
+  static bool leavesWithin(btScalar time, const btRigidBody& body) {
     btScalar speed = body.getLinearVelocity().length();
     const btVector3 extents = halfExtents(body);
     for (int axis = 0; axis < 3; ++axis) {
@@ -203,9 +203,9 @@ class SleepTracker {
   /// The radius for stillness.
   static btScalar reachOf(const btRigidBody& body) {
     // Includes motion below the sleeping threshold.
-    const btScalar slow = body.getLinearSleepingThreshold() * kHoldAfter;
-    const btScalar fall = body.getGravity().length() * kHoldAfter * kHoldAfter / 2;
-    return std::max(slow, kStillShare * fall);
+    const btScalar slow = body.getLinearSleepingThreshold() * kStillTime;
+    const btScalar fall = body.getGravity().length() * kStillTime * kStillTime / 2;
+    return std::max(slow, kStillRadius * fall);
   }
 
   static btVector3 halfExtents(const btRigidBody& body) {
@@ -225,9 +225,9 @@ class SleepTracker {
     return sum;
   }
 
-  btTransform place_{btTransform::getIdentity()};
+  btTransform anchor_{btTransform::getIdentity()};
   btTransform pose_{btTransform::getIdentity()};
-  btScalar lasted_ = 0;
+  btScalar still_time_ = 0;
 };
 
 /// State of a body beyond Bullet's, referenced by the body's user pointer.
@@ -260,8 +260,8 @@ class LayerFilter final : public btOverlapFilterCallback {
   LayerMatrix layers_;
 };
 
-/// Bullet's world with a limit on angular speeds, and with piles that come to rest. By default they
-/// do not: few iterations leave some motion in each body of a large pile, and a pile sleeps in
+/// Bullet's world with a limit on angular speeds, and with piles that come to rest. In plain Bullet
+/// they do not: few iterations leave some motion in each body of a large pile, and a pile sleeps in
 /// Bullet only when all of its bodies are slow. Here a still and supported body is held in its
 /// pose. If only such bodies touch it, it is fixed, too: the solver treats it as a wall. So a pile
 /// solidifies gradually, and few iterations suffice for the rest of it.
@@ -275,9 +275,9 @@ class World final : public btDiscreteDynamicsWorld {
   /// Support may have changed: the next step fixes no body.
   void releaseAll() { release_all_ = true; }
 
-  /// Wakes the bodies that touch this one, and all connected with these, and releases them: they
+  /// Wakes and releases the bodies that touch this one, and all bodies connected with them: they
   /// may have been supported by it.
-  void releaseThoseAt(const btRigidBody& body) {
+  void releaseNeighbours(const btRigidBody& body) {
     std::set<int> islands;  // Bullet's ids of connected components, from the last step
     const auto add = [&](const btCollisionObject& other) {
       if (!other.isStaticObject()) islands.insert(other.getIslandTag());
@@ -299,30 +299,30 @@ class World final : public btDiscreteDynamicsWorld {
 
  protected:
   void solveConstraints(btContactSolverInfo& settings) override {
-    findDisturbed();
+    markDisturbed();
     const bool release_all = std::exchange(release_all_, false);
     forEachBody([&](btRigidBody& body) {
       if (release_all || stateOf(body).disturbed) stateOf(body).held = false;
       if (!stateOf(body).held) return;
-      setShareOfImpulses(body, 0);
+      scaleImpulses(body, 0);
       body.clearForces();
     });
     btDiscreteDynamicsWorld::solveConstraints(settings);
-    forEachBody([](btRigidBody& body) { setShareOfImpulses(body, 1); });
+    forEachBody([](btRigidBody& body) { scaleImpulses(body, 1); });
   }
 
   void integrateTransforms(btScalar time_step) override {
     forEachBody([&](btRigidBody& body) {
       limitAngularSpeed(body);
       bool& held = stateOf(body).held;
-      held = held || mayBeHeld(body, time_step);
+      held = held || canBeHeld(body, time_step);
       if (!held) return;
       body.setLinearVelocity(btVector3(0, 0, 0));
       body.setAngularVelocity(btVector3(0, 0, 0));
     });
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
     forEachBody([&](btRigidBody& body) {
-      // Exactly: the solver pushes bodies apart, and integration rounds.
+      // Restores the exact pose: the solver pushes bodies apart, and integration rounds.
       if (stateOf(body).held) body.setCenterOfMassTransform(stateOf(body).stillness.pose());
       if (body.isActive()) stateOf(body).stillness.update(body, time_step);
     });
@@ -338,12 +338,12 @@ class World final : public btDiscreteDynamicsWorld {
     return *static_cast<BodyState*>(body.getUserPointer());
   }
 
-  static void setShareOfImpulses(btRigidBody& body, btScalar share) {
+  static void scaleImpulses(btRigidBody& body, btScalar share) {
     body.setLinearFactor(btVector3(share, share, share));
     body.setAngularFactor(share);
   }
 
-  void findDisturbed() {
+  void markDisturbed() {
     forEachBody([](btRigidBody& body) { stateOf(body).disturbed = false; });
     btDispatcher& contacts = *getDispatcher();
     for (int i = 0; i < contacts.getNumManifolds(); ++i) {
@@ -352,8 +352,8 @@ class World final : public btDiscreteDynamicsWorld {
       const btCollisionObject& a = *contact.getBody0();
       const btCollisionObject& b = *contact.getBody1();
       if (a.isStaticObject() || b.isStaticObject()) continue;
-      if (!stateOf(a).stillness.lasts()) stateOf(b).disturbed = true;
-      if (!stateOf(b).stillness.lasts()) stateOf(a).disturbed = true;
+      if (!stateOf(a).stillness.isStill()) stateOf(b).disturbed = true;
+      if (!stateOf(b).stillness.isStill()) stateOf(a).disturbed = true;
     }
   }
 
@@ -366,13 +366,13 @@ class World final : public btDiscreteDynamicsWorld {
   }
 
   /// Whether the body has been still long enough, and is supported.
-  [[nodiscard]] static bool mayBeHeld(const btRigidBody& body, btScalar time_step) {
+  [[nodiscard]] static bool canBeHeld(const btRigidBody& body, btScalar time_step) {
     const BodyState& state = stateOf(body);
-    if (!body.isActive() || !state.stillness.lasts()) return false;
-    if (SleepTracker::endsWithin(state.disturbed ? kPushedWithin : kLeavesWithin, body))
+    if (!body.isActive() || !state.stillness.isStill()) return false;
+    if (SleepTracker::leavesWithin(state.disturbed ? kLeaveTimeIfPushed : kLeaveTime, body))
       return false;
-    const btScalar freely_fallen = body.getGravity().length2() * time_step;
-    return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
+    const btScalar free_fall = body.getGravity().length2() * time_step;
+    return body.getLinearVelocity().dot(body.getGravity()) < (1 - kMinSupport) * free_fall;
   }
 
   btScalar max_angular_speed_;
@@ -432,14 +432,14 @@ class BulletBody : public PhysicsBody {
 
   /// Removes itself from the world, and wakes the bodies that it touches.
   void leave() {
-    world_.releaseThoseAt(body_);
+    world_.releaseNeighbours(body_);
     world_.removeRigidBody(&body_);
   }
-  /// Whether it was recently too fast to fall asleep.
-  [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
+  /// Whether the body was recently too fast to fall asleep.
+  [[nodiscard]] bool isRestless() const { return body_.getActivationState() == ACTIVE_TAG; }
   /// No effect on a frozen body.
   void wake() {
-    state_.stillness.end();
+    state_.stillness.reset();
     world_.releaseAll();
     body_.activate();
   }
@@ -451,7 +451,7 @@ class BulletBody : public PhysicsBody {
   btRigidBody body_;
 };
 
-/// By default Bullet preallocates thousands of contacts: too much for thousands of worlds. Beyond
+/// By default Bullet preallocates thousands of contacts: too many for thousands of worlds. Beyond
 /// the preallocation it allocates on demand.
 btDefaultCollisionConstructionInfo smallPools() {
   btDefaultCollisionConstructionInfo info;
@@ -477,8 +477,8 @@ class BulletEngine final : public PhysicsEngine {
     broad_phase_.m_dupdates = 1;
     // Skip the boxes of sleeping bodies; setPose() updates them.
     world_.setForceUpdateAllAabbs(false);
-    useAgainstWalls(BOX_SHAPE_PROXYTYPE, box_wall_contact_);
-    useAgainstWalls(SPHERE_SHAPE_PROXYTYPE, sphere_wall_contact_);
+    registerWallContact(BOX_SHAPE_PROXYTYPE, box_wall_contact_);
+    registerWallContact(SPHERE_SHAPE_PROXYTYPE, sphere_wall_contact_);
   }
 
   ~BulletEngine() override {
@@ -553,11 +553,11 @@ class BulletEngine final : public PhysicsEngine {
   [[nodiscard]] bool allAsleep() const override {
     // When all bodies are ready to sleep, Bullet lets them sleep in the next step, except isolated
     // bodies.
-    return bodies_.all([](const BulletBody& body) { return !body.restless(); });
+    return bodies_.all([](const BulletBody& body) { return !body.isRestless(); });
   }
 
  private:
-  void useAgainstWalls(int shape_type, btCollisionAlgorithmCreateFunc& contact) {
+  void registerWallContact(int shape_type, btCollisionAlgorithmCreateFunc& contact) {
     dispatcher_.registerCollisionCreateFunc(shape_type, STATIC_PLANE_PROXYTYPE, &contact);
     dispatcher_.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, shape_type, &contact);
   }
@@ -604,7 +604,7 @@ class BulletEngine final : public PhysicsEngine {
 
 EngineEntry entry() {
   return {{"bullet", "Bullet's rigid bodies (single precision)"},
-          makeAs<PhysicsEngine, BulletEngine>};
+          makeEntry<PhysicsEngine, BulletEngine>};
 }
 
 }  // namespace broadmark::scenes::bullet_engine

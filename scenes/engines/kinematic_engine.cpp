@@ -29,13 +29,14 @@ Vec3 times(const Vec3& v, float factor) { return plus({}, factor, v); }
 /// normalised. Library functions might round differently on other machines.
 std::array<float, 4> turned(const std::array<float, 4>& q, const Vec3& w, float time) {
   const float h = time / 2;
-  std::array<float, 4> to = {q[0] + h * (w[0] * q[3] + w[1] * q[2] - w[2] * q[1]),
-                             q[1] + h * (w[1] * q[3] + w[2] * q[0] - w[0] * q[2]),
-                             q[2] + h * (w[2] * q[3] + w[0] * q[1] - w[1] * q[0]),
-                             q[3] - h * (w[0] * q[0] + w[1] * q[1] + w[2] * q[2])};
-  const float length = std::sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2] + to[3] * to[3]);
-  for (float& component : to) component /= length;
-  return to;
+  std::array<float, 4> result = {q[0] + h * (w[0] * q[3] + w[1] * q[2] - w[2] * q[1]),
+                                 q[1] + h * (w[1] * q[3] + w[2] * q[0] - w[0] * q[2]),
+                                 q[2] + h * (w[2] * q[3] + w[0] * q[1] - w[1] * q[0]),
+                                 q[3] - h * (w[0] * q[0] + w[1] * q[1] + w[2] * q[2])};
+  const float length = std::sqrt(result[0] * result[0] + result[1] * result[1] +
+                                 result[2] * result[2] + result[3] * result[3]);
+  for (float& component : result) component /= length;
+  return result;
 }
 
 /// Shared by all bodies.
@@ -132,13 +133,14 @@ class KinematicBody : public PhysicsBody {
     if (approach <= 0) return;
     // Subtracts the speed gained from gravity behind the wall: otherwise every impact would add
     // energy.
-    const float gained = -2 * dot(normal, world.gravity) * depth;
-    const float impact = std::sqrt(std::max(0.0F, approach * approach - gained));
+    const float gravity_gain = -2 * dot(normal, world.gravity) * depth;
+    const float impact = std::sqrt(std::max(0.0F, approach * approach - gravity_gain));
     const Vec3 sideways = plus(linear_, approach, normal);
     const float sideways_speed = std::sqrt(dot(sideways, sideways));
-    const float held = world.friction * (approach + world.restitution * impact);
-    const float kept = sideways_speed > held ? 1 - held / sideways_speed : 0;
-    linear_ = plus(times(sideways, kept), world.restitution * impact, normal);
+    const float friction_speed = world.friction * (approach + world.restitution * impact);
+    const float remaining =
+        sideways_speed > friction_speed ? 1 - friction_speed / sideways_speed : 0;
+    linear_ = plus(times(sideways, remaining), world.restitution * impact, normal);
   }
 
   /// Falls asleep after a time of low energy.
@@ -178,7 +180,7 @@ class KinematicEngine final : public PhysicsEngine {
     world_.substeps_to_sleep = static_cast<std::int64_t>(std::ceil(kTimeToSleep / time));
   }
 
-  /// Bodies pass through each other, whatever their layers.
+  /// No effect: bodies pass through each other.
   void setLayers(const LayerMatrix&) override {}
 
   PhysicsBody& addBody(const BodyDescription& description) override {
@@ -218,7 +220,7 @@ class KinematicEngine final : public PhysicsEngine {
 EngineEntry entry() {
   return {{"kinematic", "bodies bounce at the walls and pass through each other: fast",
            Dynamics::passing},
-          makeAs<PhysicsEngine, KinematicEngine>};
+          makeEntry<PhysicsEngine, KinematicEngine>};
 }
 
 }  // namespace broadmark::scenes::kinematic_engine

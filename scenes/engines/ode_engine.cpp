@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/destroy.h"
+#include "broadmark/c_deleter.h"
 #include "broadmark/scenes/body_pool.h"
 #include "broadmark/scenes/registry.h"
 #include "entries.h"
@@ -37,11 +37,11 @@ constexpr double kBounceSpeed = 0.1;
 /// Time of slow motion before a body falls asleep, in seconds.
 constexpr double kTimeToSleep = 0.5;
 
-using World = std::unique_ptr<dxWorld, Destroy<dWorldDestroy>>;
-using Space = std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>>;
-using JointGroup = std::unique_ptr<dxJointGroup, Destroy<dJointGroupDestroy>>;
-using Body = std::unique_ptr<dxBody, Destroy<dBodyDestroy>>;
-using Geom = std::unique_ptr<dxGeom, Destroy<dGeomDestroy>>;
+using World = std::unique_ptr<dxWorld, CDeleter<dWorldDestroy>>;
+using Space = std::unique_ptr<dxSpace, CDeleter<dSpaceDestroy>>;
+using JointGroup = std::unique_ptr<dxJointGroup, CDeleter<dJointGroupDestroy>>;
+using Body = std::unique_ptr<dxBody, CDeleter<dBodyDestroy>>;
+using Geom = std::unique_ptr<dxGeom, CDeleter<dGeomDestroy>>;
 
 /// The library must be initialised once, before its first use.
 void initialiseOde() {
@@ -79,7 +79,7 @@ class OdeBody : public PhysicsBody {
           std::uint32_t collides_with)
       : shape_(description.shape), body_(dBodyCreate(world)) {
     dMass mass;
-    std::visit([&](const auto& kind) { take(kind, space, description.mass, mass); }, shape_);
+    std::visit([&](const auto& kind) { createGeom(kind, space, description.mass, mass); }, shape_);
     dBodySetMass(body_.get(), &mass);
     // The diagonal of three rows of four.
     mean_inertia_ = (mass.I[0] + mass.I[5] + mass.I[10]) / 3 / mass.mass;
@@ -112,7 +112,7 @@ class OdeBody : public PhysicsBody {
     const Vec3& p = pose.position;
     const auto& q = pose.rotation;
     const dQuaternion quaternion = {q[3], q[0], q[1], q[2]};
-    // The geom moves its body; that of a frozen body has none.
+    // The geom moves its body. The geom of a frozen body moves alone.
     dGeomSetPosition(geom_.get(), p[0], p[1], p[2]);
     dGeomSetQuaternion(geom_.get(), quaternion);
     frozen_pose_ = pose;
@@ -133,7 +133,7 @@ class OdeBody : public PhysicsBody {
     if (frozen_) return;
     frozen_pose_ = pose();
     frozen_ = true;
-    // A geom without a body is an immovable obstacle. It keeps its pose.
+    // A geom without a body is an immovable obstacle, and retains its pose.
     dGeomSetBody(geom_.get(), nullptr);
     stop();
   }
@@ -144,7 +144,7 @@ class OdeBody : public PhysicsBody {
     slow_time_ = 0;
   }
 
-  /// A possible support has vanished. Wakes the body; until findSupport().
+  /// Call when a possible support has vanished: wakes the body, and marks it until findSupport().
   void loseSupport() {
     support_lost_ = !frozen_;
     wake();
@@ -152,7 +152,7 @@ class OdeBody : public PhysicsBody {
   void findSupport() { support_lost_ = false; }
   [[nodiscard]] bool supportLost() const { return support_lost_; }
 
-  /// Called after every substep: falls asleep after a time of low energy. The library itself
+  /// Called after every substep: puts the body to sleep after a time of low energy. The library
   /// ignores isolated bodies.
   void rest(double sleep_threshold, double time) {
     if (asleep()) return;
@@ -190,8 +190,8 @@ class OdeBody : public PhysicsBody {
   }
 
  private:
-  /// Makes the geom and the wall points; computes `mass`.
-  void take(const BoxShape& box, dSpaceID space, double total, dMass& mass) {
+  /// Creates the geom and the wall points; computes `mass`.
+  void createGeom(const BoxShape& box, dSpaceID space, double total, dMass& mass) {
     const auto& [x, y, z] = box.half_extents;
     geom_.reset(dCreateBox(space, 2 * x, 2 * y, 2 * z));
     dMassSetBoxTotal(&mass, total, 2 * x, 2 * y, 2 * z);
@@ -203,7 +203,7 @@ class OdeBody : public PhysicsBody {
       }
     }
   }
-  void take(const SphereShape& sphere, dSpaceID space, double total, dMass& mass) {
+  void createGeom(const SphereShape& sphere, dSpaceID space, double total, dMass& mass) {
     geom_.reset(dCreateSphere(space, sphere.radius));
     dMassSetSphereTotal(&mass, total, sphere.radius);
     bounding_radius_ = point_radius_ = sphere.radius;
@@ -245,8 +245,8 @@ class OdeEngine final : public PhysicsEngine {
     dWorldSetContactSurfaceLayer(world, kRestingDepth);
     dWorldSetContactMaxCorrectingVel(world, kSeparationSpeed);
     dWorldSetMaxAngularSpeed(world, settings.max_angular_speed);
-    dWorldSetDamping(world, shareLost(settings.linear_damping),
-                     shareLost(settings.angular_damping));
+    dWorldSetDamping(world, lostFraction(settings.linear_damping),
+                     lostFraction(settings.angular_damping));
     dWorldSetLinearDampingThreshold(world, 0);
     dWorldSetAngularDampingThreshold(world, 0);
   }
@@ -259,7 +259,7 @@ class OdeEngine final : public PhysicsEngine {
 
   void removeBody(PhysicsBody& body) override {
     auto& ode_body = static_cast<OdeBody&>(body);
-    // Contacts are not retained between steps: any body near may have been supported by it.
+    // Contacts are not retained between steps: any near body may have lost its support.
     const dGeomID space_as_geom = reinterpret_cast<dGeomID>(space_.get());
     dSpaceCollide2(ode_body.geom(), space_as_geom, nullptr, [](void*, dGeomID a, dGeomID b) {
       bodyOf(a).loseSupport();
@@ -283,7 +283,7 @@ class OdeEngine final : public PhysicsEngine {
   void step() override {
     if (std::exchange(support_lost_, false)) wakeUnsupported();
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
-      // Sleeping bodies, too: an awake body wakes those that it touches, and these need their
+      // Includes sleeping bodies: an awake body wakes the bodies that it touches, which need their
       // support in the same step.
       bodies_.each([this](const OdeBody& body) {
         if (!body.frozen()) touchWalls(body);
@@ -292,7 +292,7 @@ class OdeEngine final : public PhysicsEngine {
         static_cast<OdeEngine*>(engine)->touch(a, b);
       });
       {
-        const ScopedOdeSeed loan(random_);
+        const ScopedOdeSeed seed(random_);
         dWorldQuickStep(world_.get(), time_);
       }
       dJointGroupEmpty(contacts_.get());
@@ -306,13 +306,13 @@ class OdeEngine final : public PhysicsEngine {
 
  private:
   /// The fraction of a velocity lost by damping in one substep.
-  [[nodiscard]] double shareLost(double per_second) const {
+  [[nodiscard]] double lostFraction(double per_second) const {
     return 1 - std::pow(1 - per_second, time_);
   }
 
   static OdeBody& bodyOf(dGeomID geom) { return *static_cast<OdeBody*>(dGeomGetData(geom)); }
 
-  /// Wakes all bodies connected with one that lost its support: the library lets bodies woken by
+  /// Wakes all bodies connected with a body that lost its support: the library lets bodies woken by
   /// others fall asleep again at once, before they have begun to fall.
   void wakeUnsupported() {
     using Near = std::vector<std::pair<OdeBody*, OdeBody*>>;
@@ -321,13 +321,13 @@ class OdeEngine final : public PhysicsEngine {
       if (bodyOf(a).frozen() || bodyOf(b).frozen()) return;
       static_cast<Near*>(pairs)->emplace_back(&bodyOf(a), &bodyOf(b));
     });
-    for (bool spread = true; spread;) {
-      spread = false;
+    for (bool changed = true; changed;) {
+      changed = false;
       for (const auto& [a, b] : near) {
         if (a->supportLost() == b->supportLost()) continue;
         a->loseSupport();
         b->loseSupport();
-        spread = true;
+        changed = true;
       }
     }
     bodies_.each([](OdeBody& body) { body.findSupport(); });
@@ -345,8 +345,8 @@ class OdeEngine final : public PhysicsEngine {
     }
   }
 
-  /// Adds contacts with every wall that a point of the body may reach in the next substep. So the
-  /// solver stops even fast bodies at the wall.
+  /// Adds contacts with every wall that a point of the body may reach in the next substep, so that
+  /// the solver stops even fast bodies at the wall.
   void touchWalls(const OdeBody& body) {
     for (const HalfSpace& wall : walls_) {
       body.visitWallPoints(wall, time_, [&](const dReal* at, double distance) {
@@ -354,8 +354,8 @@ class OdeEngine final : public PhysicsEngine {
         std::copy_n(at, 3, point.pos);
         std::ranges::copy(wall.normal, point.normal);
         point.depth = std::max(0.0, kRestingDepth - distance);
-        const double ahead = std::max(0.0, distance - kRestingDepth);
-        addContact(point, -ahead / time_, body.dynamicBody(), nullptr);
+        const double gap = std::max(0.0, distance - kRestingDepth);
+        addContact(point, -gap / time_, body.dynamicBody(), nullptr);
       });
     }
   }
@@ -395,7 +395,7 @@ class OdeEngine final : public PhysicsEngine {
 
 EngineEntry entry() {
   return {{"ode", "the Open Dynamics Engine's rigid bodies (double precision)"},
-          makeAs<PhysicsEngine, OdeEngine>};
+          makeEntry<PhysicsEngine, OdeEngine>};
 }
 
 }  // namespace broadmark::scenes::ode_engine

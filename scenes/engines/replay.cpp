@@ -26,7 +26,7 @@ struct Candidate {
   std::uint32_t frames = 0;
 };
 
-/// Parses a file name; nothing unless it names a recording of this scene and object type.
+/// Parses a file name; nullopt unless it names a recording of this scene and object type.
 std::optional<Candidate> candidateOf(const fs::path& path, const std::string& scene,
                                      const std::string& object_type,
                                      const std::vector<std::string_view>& extensions) {
@@ -48,20 +48,21 @@ std::optional<Candidate> candidateOf(const fs::path& path, const std::string& sc
 
 class ReplaySimulation final : public Simulation {
  public:
-  ReplaySimulation(const SceneListing& scene, const ReplayEntry& engine, std::string_view needed)
+  ReplaySimulation(const SceneListing& scene, const ReplayEntry& engine,
+                   std::string_view required_extension)
       : Simulation(scene),
         entry_(engine),
-        needed_(needed),
+        required_extension_(required_extension),
         object_type_(choiceOf(objectTypes())),
         engine_{engine.listing.id, {engine.listing.id}} {}
 
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"objects", "number of bodies", &objects_, 0, kMaxBodies});
-    visit({"frames", "number of frames after the initial pose; 0: all that are recorded", &frames_,
-           0, kMaxFrames});
-    visit({"object_type", "what the bodies are", &object_type_});
-    visit({"engine", "what replays them", &engine_});
-    visit({"input", "recording to replay, or the directory where it lies under its own name",
+    visit({"frames", "number of frames after the initial pose; 0: all recorded frames", &frames_, 0,
+           kMaxFrames});
+    visit({"object_type", "shape of the bodies", &object_type_});
+    visit({"engine", "engine that replays the recording", &engine_});
+    visit({"input", "recording to replay, or a directory that contains it under its standard name",
            &input_});
   }
 
@@ -72,7 +73,7 @@ class ReplaySimulation final : public Simulation {
   }
 
   [[nodiscard]] fs::path input() const override { return find(); }
-  /// Of the open recording, even if its path now names another one.
+  /// The hash of the open recording, even if its path now names another file.
   [[nodiscard]] std::string inputHash() override {
     return replay_ ? replay_->inputHash() : openRecordingFile(input())->hash();
   }
@@ -91,7 +92,7 @@ class ReplaySimulation final : public Simulation {
     return replay_->next();
   }
 
-  std::span<const Aabb> unturnedBoxes() override { return replay_->unturnedBoxes(); }
+  std::span<const Aabb> unrotatedBoxes() override { return replay_->unrotatedBoxes(); }
   std::span<const Pose> poses() override { return replay_->poses(); }
 
  private:
@@ -117,14 +118,14 @@ class ReplaySimulation final : public Simulation {
     const SceneInfo& info = recording->scene();
     if (info.name != listing().name || info.object_type != objectTypeName() ||
         info.objects != recordedObjects() || info.frames < frames_) {
-      throw InputError(fmt::format("{}: holds {} {} N{} F{}: {} is needed", path.string(),
+      throw InputError(fmt::format("{}: contains {} {} N{} F{}, but {} is needed", path.string(),
                                    info.name, info.object_type, info.objects, info.frames,
-                                   wanted()));
+                                   description()));
     }
     return entry_.create(std::move(recording));
   }
 
-  [[nodiscard]] std::string wanted() const {
+  [[nodiscard]] std::string description() const {
     return fmt::format("{} {} N{} with at least {} frames ({})", listing().name, objectTypeName(),
                        recordedObjects(), frames_, fmt::join(entry_.extensions, " or "));
   }
@@ -133,8 +134,8 @@ class ReplaySimulation final : public Simulation {
   /// requested; among equals the one with the preferred extension.
   [[nodiscard]] fs::path find() const {
     const auto& extensions = entry_.extensions;
-    if (needed_ == kBroadmarkExtension &&
-        std::ranges::find(extensions, needed_) == extensions.end()) {
+    if (required_extension_ == kBroadmarkExtension &&
+        std::ranges::find(extensions, required_extension_) == extensions.end()) {
       throw InputError(fmt::format(
           "--engine {}: cannot replay {}: {} recordings hold neither absent bodies nor layers or "
           "worlds",
@@ -145,27 +146,28 @@ class ReplaySimulation final : public Simulation {
           fmt::format("--engine {}: name the recording to replay, or its directory, with --input",
                       engine_.value));
     }
-    const std::vector<Candidate> there = candidates();
+    const std::vector<Candidate> available = candidates();
     if (objects_ % entry_.bodies_per_recorded != 0) {
-      throw InputError(fmt::format(
-          "--engine {} makes {} bodies of each: {} is not a multiple of {}{}", engine_.value,
-          entry_.bodies_per_recorded, objects_, entry_.bodies_per_recorded, availableText(there)));
+      throw InputError(
+          fmt::format("--engine {} makes {} bodies of each: {} is not a multiple of {}{}",
+                      engine_.value, entry_.bodies_per_recorded, objects_,
+                      entry_.bodies_per_recorded, availableText(available)));
     }
-    if (fs::is_regular_file(input_)) return given();
+    if (fs::is_regular_file(input_)) return inputFile();
     const Candidate* best = nullptr;
-    for (const Candidate& candidate : there) {
+    for (const Candidate& candidate : available) {
       const bool suits = candidate.objects == recordedObjects() && candidate.frames >= frames_;
       if (suits && (best == nullptr || isBetter(candidate, *best))) best = &candidate;
     }
     if (best == nullptr) {
       throw InputError(
-          fmt::format("{}: no recording of {}{}", input_, wanted(), availableText(there)));
+          fmt::format("{}: no recording of {}{}", input_, description(), availableText(available)));
     }
     return best->path;
   }
 
   /// The file named by `input`.
-  [[nodiscard]] fs::path given() const {
+  [[nodiscard]] fs::path inputFile() const {
     fs::path path = input_;
     if (std::ranges::find(entry_.extensions, path.extension().string()) ==
         entry_.extensions.end()) {
@@ -234,7 +236,7 @@ class ReplaySimulation final : public Simulation {
   }
 
   ReplayEntry entry_;
-  std::string_view needed_;
+  std::string_view required_extension_;
   std::int64_t objects_ = 1000;
   std::int64_t frames_ = 0;
   Choice object_type_;
@@ -249,7 +251,7 @@ class ReplaySimulation final : public Simulation {
 
 PoseSource& Replay::posed() const {
   if (auto* source = dynamic_cast<PoseSource*>(recording_.get())) return *source;
-  throw InputError(recording_->name() + ": holds boxes only, not the poses that .posrot needs");
+  throw InputError(recording_->name() + ": contains only boxes, not the poses that .posrot needs");
 }
 
 std::vector<ReplayEntry> replayEntries() {
@@ -258,13 +260,13 @@ std::vector<ReplayEntry> replayEntries() {
                        .dynamics = Dynamics::replayed},
            .bodies_per_recorded = 1,
            .extensions = {kPosrotExtension, kAabbsExtension, kBroadmarkExtension},
-           .create = makeAs<Replay, Replay>},
+           .create = makeEntry<Replay, Replay>},
           splitter::entry()};
 }
 
 std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine,
-                                       std::string_view needed) {
-  return std::make_unique<ReplaySimulation>(scene, engine, needed);
+                                       std::string_view required_extension) {
+  return std::make_unique<ReplaySimulation>(scene, engine, required_extension);
 }
 
 }  // namespace broadmark::scenes

@@ -11,7 +11,7 @@
 
 namespace broadmark::scenes {
 
-/// The frames of a recording; unchanged unless overridden.
+/// Replays the frames of a recording; derived classes may transform them.
 class Replay : public FrameSource, public PoseSource {
  public:
   explicit Replay(std::unique_ptr<Recording> recording) : recording_(std::move(recording)) {}
@@ -19,7 +19,7 @@ class Replay : public FrameSource, public PoseSource {
   [[nodiscard]] const SceneInfo& scene() const override { return recording_->scene(); }
   Frame rewind() override { return recording_->rewind(); }
   std::optional<Frame> next() override { return recording_->next(); }
-  std::span<const Aabb> unturnedBoxes() override { return posed().unturnedBoxes(); }
+  std::span<const Aabb> unrotatedBoxes() override { return posed().unrotatedBoxes(); }
   std::span<const Pose> poses() override { return posed().poses(); }
 
   std::string inputHash() { return recording_->hash(); }
@@ -39,7 +39,7 @@ struct ReplayEntry {
   std::uint32_t bodies_per_recorded;
   /// Extensions of readable recordings, the preferred one first.
   std::vector<std::string_view> extensions;
-  /// The recording has one of these extensions.
+  /// Creates the replay of a recording with one of these extensions.
   std::unique_ptr<Replay> (*create)(std::unique_ptr<Recording>);
 };
 
@@ -49,9 +49,9 @@ namespace splitter {
 ReplayEntry entry();
 }
 
-/// A replay of a built-in scene: a simulation with parameters that select the recording. `needed`:
-/// the extension of recordings that can hold the scene.
+/// A replay of a built-in scene: a simulation with parameters that select the recording.
+/// `required_extension`: the extension of recordings that can hold the scene.
 std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine,
-                                       std::string_view needed);
+                                       std::string_view required_extension);
 
 }  // namespace broadmark::scenes

@@ -84,7 +84,7 @@ class Splitter final : public Replay {
   }
 
   /// Bodies are unrotated in the initial pose.
-  std::span<const Aabb> unturnedBoxes() override { return boxes_; }
+  std::span<const Aabb> unrotatedBoxes() override { return boxes_; }
 
   /// Computed only on demand.
   std::span<const Pose> poses() override {
@@ -120,7 +120,7 @@ ReplayEntry entry() {
                       .dynamics = Dynamics::replayed},
           .bodies_per_recorded = kParts,
           .extensions = {kPosrotExtension},
-          .create = makeAs<Replay, Splitter>};
+          .create = makeEntry<Replay, Splitter>};
 }
 
 }  // namespace broadmark::scenes::splitter

@@ -42,7 +42,7 @@ class Brownian final : public Scene {
 
 SceneEntry entry() {
   return {{"brownian", "Brownian", "bodies fly about without gravity, pushed at random"},
-          makeAs<Scene, Brownian>};
+          makeEntry<Scene, Brownian>};
 }
 
 }  // namespace broadmark::scenes::brownian

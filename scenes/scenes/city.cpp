@@ -132,9 +132,9 @@ class City final : public Scene {
   void placeBuilding(BodyDescription& body, const Settings& settings, Random& random) {
     const Lot lot = lots_.back();
     lots_.pop_back();
-    const double wanted = lot.edge * random.between(std::min(0.6, crowding_), crowding_);
+    const double width_in_lot = lot.edge * random.between(std::min(0.6, crowding_), crowding_);
     const double width =
-        std::min(wanted, lot.edge + 0.2 * street(settings));  // the lanes stay free
+        std::min(width_in_lot, lot.edge + 0.2 * street(settings));  // the lanes stay free
     const double stretch = 0.4 + 3 * std::pow(random.uniform(), 2);
     body.shape = fitted(body.shape, width, stretch);
     body.pose.position = {static_cast<float>(lot.x), onGround(body.shape, settings),
@@ -146,7 +146,9 @@ class City final : public Scene {
     const double side = settings.side();
     body.shape = fitted(body.shape, 0.25 * street(settings), 1);
     const float limit = farthestInside(body.shape, side);
-    const auto somewhere = [&] { return static_cast<float>(random.between(-limit, limit)); };
+    const auto random_coordinate = [&] {
+      return static_cast<float>(random.between(-limit, limit));
+    };
 
     Driver driver{.id = index, .limit = limit};
     Course& course = driver.course;
@@ -168,7 +170,7 @@ class City final : public Scene {
     course.lane[2 - course.axis] = std::clamp(
         static_cast<float>((middle - 0.5) * side) - driver.to_other_lane / 2, -limit, limit);
 
-    body.pose = course.poseAt(somewhere());
+    body.pose = course.poseAt(random_coordinate());
     body.linear_velocity = course.velocityAt(body.pose.position);
     drivers_.push_back(driver);
   }
@@ -202,7 +204,7 @@ class City final : public Scene {
   double large_ = 0.12;
   double crowding_ = 1.1;
   std::vector<BodyType> types_;  ///< by body
-  std::vector<Lot> lots_;        ///< without a building so far
+  std::vector<Lot> lots_;        ///< still without a building
   std::vector<Driver> drivers_;  ///< the movers
 };
 
@@ -210,7 +212,7 @@ class City final : public Scene {
 
 SceneEntry entry() {
   return {{"city", "City", "buildings of all sizes that never move, and traffic in the streets"},
-          makeAs<Scene, City>};
+          makeEntry<Scene, City>};
 }
 
 }  // namespace broadmark::scenes::city

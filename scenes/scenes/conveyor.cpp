@@ -1,5 +1,5 @@
 // Conveyor: belts carry bodies through the world at different speeds and cross each other. A body
-// at the end of its belt returns to the start. So broad phases that rely on small moves get large
+// at the end of its belt returns to the start, so broad phases that rely on small moves face large
 // ones in every frame.
 //
 // The belts lie along the edges of a cube within the world and extend from wall to wall: four along
@@ -78,8 +78,8 @@ class Conveyor final : public Scene {
     const float along = body.pose().position[course.axis];
     if (course.speed > 0 ? along > rider.limit : along < -rider.limit) {
       // Carries over the distance beyond the end, to keep the stream even.
-      const float again = along - std::copysign(2 * rider.limit, course.speed);
-      body.setPose(course.poseAt(std::clamp(again, -rider.limit, rider.limit)));
+      const float restart = along - std::copysign(2 * rider.limit, course.speed);
+      body.setPose(course.poseAt(std::clamp(restart, -rider.limit, rider.limit)));
     }
     body.setVelocity(course.velocityAt(body.pose().position), body.angularVelocity());
   }
@@ -94,8 +94,8 @@ class Conveyor final : public Scene {
 
 SceneEntry entry() {
   return {{"conveyor", "Conveyor",
-           "crossing streams of bodies that start again at the end of their belts"},
-          makeAs<Scene, Conveyor>};
+           "crossing streams of bodies that return to the start at the end of their belts"},
+          makeEntry<Scene, Conveyor>};
 }
 
 }  // namespace broadmark::scenes::conveyor

@@ -25,9 +25,9 @@ float farthestInside(const Shape& shape, double side) {
   return static_cast<float>(std::max(0.0, side / 2 - reach));
 }
 
-double sizeOfMany(double most, Random& random) {
+double powerLawSize(double max_size, Random& random) {
   // The fraction of bodies larger than x is 1/x³.
-  return std::min(1 / std::cbrt(1 - random.uniform()), std::max(1.0, most));
+  return std::min(1 / std::cbrt(1 - random.uniform()), std::max(1.0, max_size));
 }
 
 }  // namespace broadmark::scenes

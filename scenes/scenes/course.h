@@ -19,12 +19,12 @@ struct Course {
   [[nodiscard]] Vec3 velocityAt(const Vec3& position) const;
 };
 
-/// The largest coordinate of a body's centre with the body inside a world of this side in any
-/// rotation; 0 for a body larger than the world.
+/// The maximum coordinate of a body's centre such that the body is inside a world of this side in
+/// any rotation; 0 for a body larger than the world.
 float farthestInside(const Shape&, double side);
 
-/// A random size from 1 to `most` (at least 1). Doubling the size divides the number of bodies by
-/// eight: all sizes fill about the same volume.
-double sizeOfMany(double most, Random&);
+/// A random size from 1 to `max_size` (at least 1). Doubling the size divides the number of bodies
+/// by eight: all sizes fill about the same volume.
+double powerLawSize(double max_size, Random&);
 
 }  // namespace broadmark::scenes

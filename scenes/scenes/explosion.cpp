@@ -44,32 +44,33 @@ class Explosion final : public Scene {
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"jitter", "how far bodies start off their places in the lattice, per its spacing",
+    visit({"jitter", "initial displacement of bodies from the lattice, in lattice spacings",
            &jitter_, 0, 1});
-    visit({"slowest", "least outward speed, as a share of the largest at that distance", &slowest_,
-           0, 1});
+    visit({"slowest", "minimum outward speed, as a share of the maximum at that distance",
+           &slowest_, 0, 1});
     visit({"tumbling", "largest angular speed at the start, in radians per second", &tumbling_, 0,
            1000});
   }
 
   void prepare(const Settings& settings, Random& random) override {
     const auto count = static_cast<std::size_t>(settings.objects);
-    places_ = ballOfPoints(count);
-    outermost_ = count > 1 ? std::sqrt(lengthSquared(places_.back())) : 1;
+    lattice_points_ = ballOfPoints(count);
+    outermost_ = count > 1 ? std::sqrt(lengthSquared(lattice_points_.back())) : 1;
     // The volume of the ball in lattice cells is the number of bodies.
     const double lattice_radius =
         std::cbrt(3 * static_cast<double>(count) / (4 * std::numbers::pi));
     spacing_ = settings.initial_radius * settings.side() / lattice_radius;
-    random.shuffle(places_);  // ids must be independent of positions
+    random.shuffle(lattice_points_);  // ids must be independent of positions
   }
 
   void place(std::size_t index, BodyDescription& body, const Settings& settings,
              Random& random) override {
     const double speed = settings.initial_speed * settings.side() * random.between(slowest_, 1);
     for (int axis = 0; axis < 3; ++axis) {
-      const double place = places_[index][axis] + jitter_ * random.between(-0.5, 0.5);
-      body.pose.position[axis] = static_cast<float>(spacing_ * place);
-      body.linear_velocity[axis] = static_cast<float>(speed * places_[index][axis] / outermost_);
+      const double coordinate = lattice_points_[index][axis] + jitter_ * random.between(-0.5, 0.5);
+      body.pose.position[axis] = static_cast<float>(spacing_ * coordinate);
+      body.linear_velocity[axis] =
+          static_cast<float>(speed * lattice_points_[index][axis] / outermost_);
     }
     body.angular_velocity = random.inBall(tumbling_);
   }
@@ -78,8 +79,8 @@ class Explosion final : public Scene {
   double jitter_ = 0.15;
   double slowest_ = 0.4;
   double tumbling_ = 4;
-  std::vector<Point> places_;  ///< by body, in the lattice
-  double outermost_ = 1;       ///< distance of the farthest place
+  std::vector<Point> lattice_points_;  ///< by body, in the lattice
+  double outermost_ = 1;               ///< distance of the farthest point
   double spacing_ = 1;
 };
 
@@ -87,7 +88,7 @@ class Explosion final : public Scene {
 
 SceneEntry entry() {
   return {{"explosion", "Explosion", "a dense ball of bodies flies apart"},
-          makeAs<Scene, Explosion>};
+          makeEntry<Scene, Explosion>};
 }
 
 }  // namespace broadmark::scenes::explosion

@@ -1,6 +1,6 @@
-// Fountain: a nozzle in the floor throws bodies up; they fall, lie still and vanish. The jet swells
-// and subsides, and so the number of bodies rises and falls. A new body reuses the id of one that
-// has vanished, often in the same frame.
+// Fountain: a nozzle in the floor throws bodies up; they fall, come to rest and vanish. The jet
+// swells and subsides, and so the number of bodies rises and falls. A new body reuses the id of a
+// body that has vanished, often in the same frame.
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +29,8 @@ class Fountain final : public Scene {
     visit({"period", "frames from one swell of the jet to the next", &period_, 1, 1'000'000});
     visit({"spread", "largest sideways speed of the jet, as a share of the upward one", &spread_, 0,
            1});
-    visit({"filled", "share of the ids that bodies have at the start, anywhere in the world",
-           &filled_, 0, 1});
+    visit({"filled", "share of the bodies present at the start, anywhere in the world", &filled_, 0,
+           1});
   }
 
   void describe(const Settings&, SceneInfo& info) const override { info.all_present = false; }
@@ -43,7 +43,7 @@ class Fountain final : public Scene {
   void populate(Stage& stage) override {
     const auto count = static_cast<std::size_t>(filled_ * static_cast<double>(stage.bodies.size()));
     for (std::size_t i = 0; i < count; ++i) {
-      const auto id = lifetimes_.take(framesOf(stage.random.uniform()));
+      const auto id = lifetimes_.allocate(framesOf(stage.random.uniform()));
       stage.bodies.add(*id, stage.describeAnywhere(*id));
     }
   }
@@ -54,7 +54,7 @@ class Fountain final : public Scene {
     due_ += (1 - std::cos(phase)) / 2 * static_cast<double>(stage.bodies.size()) /
             static_cast<double>(lifetime_);
     for (; due_ >= 1; --due_) {
-      const auto id = lifetimes_.take(frame + framesOf(stage.random.between(0.5, 1.5)));
+      const auto id = lifetimes_.allocate(frame + framesOf(stage.random.between(0.5, 1.5)));
       if (!id) continue;
       stage.bodies.add(*id, thrown(*id, stage));
     }
@@ -71,8 +71,9 @@ class Fountain final : public Scene {
     const double side = settings.side();
     BodyDescription body = stage.describeBody(id);
     const float reach = farthestInside(body.shape, side);
-    const Vec3 place = stage.random.inBall(std::min<double>(settings.initial_radius * side, reach));
-    body.pose.position = {place[0], -reach, place[2]};
+    const Vec3 nozzle_point =
+        stage.random.inBall(std::min<double>(settings.initial_radius * side, reach));
+    body.pose.position = {nozzle_point[0], -reach, nozzle_point[2]};
     const double speed = settings.initial_speed * side * stage.random.between(0.7, 1);
     const Vec3 sideways = stage.random.inBall(spread_ * speed);
     body.linear_velocity = {sideways[0], static_cast<float>(speed), sideways[2]};
@@ -90,8 +91,8 @@ class Fountain final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {{"fountain", "Fountain", "bodies are thrown up, fall and vanish: ids are used again"},
-          makeAs<Scene, Fountain>};
+  return {{"fountain", "Fountain", "bodies are thrown up, fall and vanish: ids are reused"},
+          makeEntry<Scene, Fountain>};
 }
 
 }  // namespace broadmark::scenes::fountain

@@ -16,7 +16,8 @@ float length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
 class FreeFall final : public Scene {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"freeze_slow", "freeze slow bodies for good once the scene has settled", &freeze_slow_});
+    visit({"freeze_slow", "freeze slow bodies permanently once the scene has settled",
+           &freeze_slow_});
     visit({"freeze_after", "frame after which slow bodies are frozen", &freeze_after_, 0,
            kMaxFrames});
     visit({"freeze_speed", "speed below which a body is slow, in world units per second",
@@ -50,7 +51,7 @@ class FreeFall final : public Scene {
 
 SceneEntry entry() {
   return {{"freefall", "FreeFall", "bodies fall to the floor and come to rest"},
-          makeAs<Scene, FreeFall>};
+          makeEntry<Scene, FreeFall>};
 }
 
 }  // namespace broadmark::scenes::freefall

@@ -65,8 +65,8 @@ class Gravity final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {{"gravity", "Gravity", "a strong gravity that keeps turning to other sides"},
-          makeAs<Scene, Gravity>};
+  return {{"gravity", "Gravity", "a strong gravity that keeps changing direction"},
+          makeEntry<Scene, Gravity>};
 }
 
 }  // namespace gravity

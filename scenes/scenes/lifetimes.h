@@ -17,14 +17,15 @@ namespace broadmark::scenes {
 /// first, often in the same frame.
 class Lifetimes {
  public:
-  /// Exactly the ids [first, end) become free.
+  /// Frees exactly the ids [first, end).
   void reset(std::size_t first, std::size_t end) {
     free_.clear();
     ends_ = {};
     for (std::size_t id = end; id > first; --id) free_.push_back(id - 1);
   }
-  /// Takes a free id, until removeOld() is called for frame `last` or later; nothing: none is free.
-  std::optional<std::size_t> take(std::uint32_t last) {
+  /// Allocates a free id until removeOld() is called for frame `last` or later; nullopt: none is
+  /// free.
+  std::optional<std::size_t> allocate(std::uint32_t last) {
     if (free_.empty()) return {};
     const std::size_t id = free_.back();
     free_.pop_back();

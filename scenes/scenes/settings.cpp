@@ -31,10 +31,10 @@ Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(eng
 void Settings::visit(const ParameterVisitor& visit) {
   visit({"objects", "number of bodies", &objects, 0, kMaxBodies});
   visit({"frames", "number of frames after the initial pose", &frames, 1, kMaxFrames});
-  visit({"object_type", "what the bodies are", &object_type});
-  visit({"engine", "physics engine that moves them", &engine});
-  visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
-  visit({"density", "share of the world's volume that bodies of unit shape and this scale fill",
+  visit({"object_type", "shape of the bodies", &object_type});
+  visit({"engine", "physics engine that moves the bodies", &engine});
+  visit({"seed", "seed of the random numbers", &seed, 0, 4'294'967'295});
+  visit({"density", "share of the world's volume filled by bodies of unit shape and this scale",
          &density, 1e-6, 1});
   visit({"scale", "factor on the size of all bodies, in world units", &scale, 1e-3, 1e3});
   visit({"mass", "mass of a body", &mass, 1e-3, 1e6});

@@ -125,8 +125,8 @@ class Shooter final : public Scene {
 
   [[nodiscard]] BodyDescription levelBox(std::size_t id, Stage& stage) const {
     const Settings& settings = stage.settings;
-    const double most = largest_ * settings.side() / settings.scale;
-    BodyDescription body = stage.describeAnywhere(id, sizeOfMany(most, stage.random));
+    const double max_size = largest_ * settings.side() / settings.scale;
+    BodyDescription body = stage.describeAnywhere(id, powerLawSize(max_size, stage.random));
     // Half of the boxes stand on the floor.
     if (id % 2 == 0) body.pose.position[1] = -farthestInside(body.shape, settings.side());
     return body;
@@ -140,7 +140,7 @@ class Shooter final : public Scene {
 
   void shoot(std::size_t shooter, Stage& stage, std::uint32_t frame) {
     constexpr double kSize = 0.3;
-    const auto id = lifetimes_.take(frame + static_cast<std::uint32_t>(lifetime_));
+    const auto id = lifetimes_.allocate(frame + static_cast<std::uint32_t>(lifetime_));
     if (!id) return;
     const Settings& settings = stage.settings;
     BodyDescription body = stage.describeAnywhere(*id, kSize);
@@ -176,7 +176,7 @@ class Shooter final : public Scene {
 SceneEntry entry() {
   return {{"shooter", "Shooter",
            "a level that never moves, characters, bursts of projectiles, triggers: four layers"},
-          makeAs<Scene, Shooter>};
+          makeEntry<Scene, Shooter>};
 }
 
 }  // namespace broadmark::scenes::shooter

@@ -1,5 +1,5 @@
-// Spot: all bodies at one place, then apart. At first every body overlaps every other, and nothing
-// moves; then they fly off in all directions, and soon hardly any two overlap.
+// Spot: all bodies at one point, then flying apart. At first every body overlaps every other, and
+// nothing moves; then they fly off in all directions, and soon hardly any two overlap.
 
 #include <cstdint>
 
@@ -51,7 +51,7 @@ class Spot final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {{"spot", "Spot", "all bodies at one place, then apart"}, makeAs<Scene, Spot>};
+  return {{"spot", "Spot", "all bodies at one place, then apart"}, makeEntry<Scene, Spot>};
 }
 
 }  // namespace broadmark::scenes::spot

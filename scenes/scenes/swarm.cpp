@@ -15,8 +15,8 @@ namespace {
 Vec3 sum(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
 Vec3 inDirection(const Vec3& direction, double length) {
-  const double present = std::hypot(direction[0], direction[1], direction[2]);
-  const auto factor = static_cast<float>(present > 0 ? length / present : 0);
+  const double norm = std::hypot(direction[0], direction[1], direction[2]);
+  const auto factor = static_cast<float>(norm > 0 ? length / norm : 0);
   return {factor * direction[0], factor * direction[1], factor * direction[2]};
 }
 
@@ -34,16 +34,15 @@ class Swarm final : public Scene {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"flocks", "number of flocks at the start, each in a ball of the initial radius",
            &flocks_, 1, 1'000'000});
-    visit({"disorder",
-           "how much bodies of a flock differ in velocity at the start, per initial speed",
+    visit({"disorder", "spread of velocities within a flock at the start, per initial speed",
            &disorder_, 0, 1});
   }
 
   void prepare(const Settings& settings, Random& random) override {
     starts_.resize(static_cast<std::size_t>(std::min(flocks_, settings.objects)));
-    const double room = std::max(0.0, 0.5 - settings.initial_radius) * settings.side();
+    const double limit = std::max(0.0, 0.5 - settings.initial_radius) * settings.side();
     for (Start& start : starts_) {
-      start.centre = random.inBall(room);
+      start.centre = random.inBall(limit);
       start.velocity = inDirection(random.inBall(1), settings.initial_speed * settings.side());
     }
   }
@@ -71,7 +70,7 @@ class Swarm final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {{"swarm", "Swarm", "flocks of boids wander about"}, makeAs<Scene, Swarm>};
+  return {{"swarm", "Swarm", "flocks of boids wander about"}, makeEntry<Scene, Swarm>};
 }
 
 }  // namespace broadmark::scenes::swarm

@@ -43,10 +43,10 @@ class World final : public Scene {
   void populate(Stage& stage) override {
     const Settings& settings = stage.settings;
     Random& random = stage.random;
-    const double most = largest_ * settings.side() / settings.scale;
+    const double max_size = largest_ * settings.side() / settings.scale;
     for (std::size_t id = 0; id < stage.bodies.size(); ++id) {
       const bool mover = isMover(id, settings);
-      const double size = mover ? 1 : sizeOfMany(most, random);
+      const double size = mover ? 1 : powerLawSize(max_size, random);
       BodyDescription body = stage.describeAnywhere(id, size);
       if (mover) {
         body.linear_velocity = launchVelocity(settings, random);
@@ -73,7 +73,7 @@ class World final : public Scene {
 
 SceneEntry entry() {
   return {{"world", "World", "static boxes of all sizes, and a few bodies that fly through them"},
-          makeAs<Scene, World>};
+          makeEntry<Scene, World>};
 }
 
 }  // namespace broadmark::scenes::world

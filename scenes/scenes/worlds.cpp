@@ -21,11 +21,11 @@ class Worlds final : public Scene {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"bodies_per_world", "number of bodies in each copy; the density is that of one copy",
            &bodies_per_world_, 1, 1'000'000});
-    visit({"episode", "frames after which a copy starts again", &episode_, 1, 1'000'000});
+    visit({"episode", "frames after which a copy restarts", &episode_, 1, 1'000'000});
   }
 
   void describe(const Settings& settings, SceneInfo& info) const override {
-    info.world = ofOneWorld(settings).world();
+    info.world = copySettings(settings).world();
     std::vector<BodyGroups> bodies(info.objects);
     for (std::size_t id = 0; id < bodies.size(); ++id) {
       bodies[id].world =
@@ -38,7 +38,7 @@ class Worlds final : public Scene {
     starts_.clear();
     starts_.reserve(static_cast<std::size_t>(settings.objects));
     world_size_ = static_cast<std::size_t>(bodies_per_world_);
-    copy_settings_ = ofOneWorld(settings);
+    copy_settings_ = copySettings(settings);
   }
 
   void place(std::size_t index, BodyDescription& body, const Settings&, Random& random) override {
@@ -56,19 +56,19 @@ class Worlds final : public Scene {
     const auto episode = static_cast<std::size_t>(episode_);
     for (std::size_t world = 0; world < worlds; ++world) {
       // Episodes end one after the other.
-      if ((frame + world * episode / worlds) % episode == 0) startAgain(world, stage);
+      if ((frame + world * episode / worlds) % episode == 0) restart(world, stage);
     }
   }
 
  private:
   /// The settings of a copy as a separate scene.
-  [[nodiscard]] Settings ofOneWorld(const Settings& settings) const {
+  [[nodiscard]] Settings copySettings(const Settings& settings) const {
     Settings copy = settings;
     copy.objects = std::min(bodies_per_world_, settings.objects);
     return copy;
   }
 
-  void startAgain(std::size_t world, Stage& stage) const {
+  void restart(std::size_t world, Stage& stage) const {
     const std::size_t end = std::min(starts_.size(), (world + 1) * world_size_);
     for (std::size_t id = world * world_size_; id < end; ++id) {
       PhysicsBody& body = *stage.bodies[id];
@@ -88,7 +88,7 @@ class Worlds final : public Scene {
 
 SceneEntry entry() {
   return {{"worlds", "Worlds", "many copies of a small FreeFall at the same place"},
-          makeAs<Scene, Worlds>};
+          makeEntry<Scene, Worlds>};
 }
 
 }  // namespace broadmark::scenes::worlds

@@ -53,8 +53,8 @@ void visitProperties(Body& body, const Visit& visit) {
   visit("group", body.group, kDefault.group);
 }
 
-/// A plain value. Lengths are in world units. Body id = position in the list. At most kMaxBodies
-/// (simulation.h) bodies.
+/// A scene as a plain value. Lengths are in world units. A body's id is its index. At most
+/// kMaxBodies (simulation.h) bodies.
 struct AuthoredScene {
   std::string name = "Untitled";  ///< as in recordings
   Aabb world{{-10, -10, -10, 0}, {10, 10, 10, 0}};
@@ -67,36 +67,35 @@ struct AuthoredScene {
   friend bool operator==(const AuthoredScene&, const AuthoredScene&) = default;
 };
 
-/// Frames of bodies with known shapes and velocities, not only boxes.
+/// A source of frames with shapes and velocities of bodies, not only boxes.
 class SceneSource {
  public:
   virtual ~SceneSource() = default;
-  /// The latest frame as a separate scene: its bodies with their velocities, and the present
+  /// The latest frame as a separate scene: its bodies with their velocities, and the current
   /// gravity.
   [[nodiscard]] virtual AuthoredScene authoredScene() = 0;
 };
 
-/// The fault of a part of a scene and the expected value ("mass: a number from … is expected"); "":
-/// none.
+/// Checks a part of a scene. Returns the fault with the expected value ("mass: a number from … is
+/// expected"), or "".
 std::string faultOfBody(const AuthoredBody&);
 std::string faultOfName(std::string_view name);
 std::string faultOfWorld(const Aabb&);
 
-/// The scene as JSON (docs/scene-format.md), one body a line. Round-trips bit for bit. Throws
-/// InputError if a part of the scene is invalid.
+/// Formats a scene as JSON (docs/scene-format.md), one body per line. Round-trips bit for bit.
+/// Throws InputError if a part of the scene is invalid.
 std::string formatAuthoredScene(const AuthoredScene&);
 
 /// Parses such a text, in time and memory proportional to its length; `name` is used in messages.
-/// Throws InputError with the body and the key, and what would be right.
+/// Throws InputError with the body, the key and the expected value.
 AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
 
-/// A body that fills this box; a sphere if the object type says so.
-AuthoredBody bodyIn(const Aabb& box, const std::string& object_type = {});
+/// A body that fills this box: a sphere if the object type is "Spheres".
+AuthoredBody bodyFilling(const Aabb& box, const std::string& object_type = {});
 
-/// The object type in its recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
+/// The object type for recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
 std::string objectTypeName(const AuthoredScene&);
 
-/// The collision filter of its bodies.
 CollisionFilter collisionFilterOf(const AuthoredScene&);
 
 /// The tight box of each body in its initial pose.

@@ -20,7 +20,7 @@ class AuthoredParameters final : public Parametrised {
   /// The defaults, overridden by the stated values. Throws InputError for an unknown parameter or
   /// an invalid value.
   explicit AuthoredParameters(const ParameterValues& stated = {});
-  /// Takes the values of another scene for all common parameters.
+  /// Copies the values of another scene for all common parameters.
   AuthoredParameters(const ParameterValues& other, const Vec3& gravity);
   ~AuthoredParameters() override;
   AuthoredParameters(AuthoredParameters&&) noexcept;
@@ -49,7 +49,7 @@ class AuthoredParameters final : public Parametrised {
 class SceneDocument {
  public:
   virtual ~SceneDocument() = default;
-  /// The scene in its initial state, with the present parameters.
+  /// The scene in its initial state, with the current parameters.
   [[nodiscard]] virtual AuthoredScene document() = 0;
 };
 
@@ -58,7 +58,7 @@ class SceneDocument {
 std::unique_ptr<Simulation> makeAuthoredSimulation(AuthoredScene scene,
                                                    std::filesystem::path file = {});
 
-/// Frame `frame` of a recording or simulation as a separate scene, with all available data: a
+/// Converts a frame of a recording or simulation to a scene, with all available data: a
 /// SceneSource provides bodies with velocities and gravity; a PoseSource rotated bodies at rest;
 /// any other source unrotated bodies at rest, one for each box. Leaves the source at that frame.
 /// Throws InputError if there is no such frame, or a box in it cannot be a body.

@@ -15,21 +15,21 @@ namespace broadmark::scenes {
 /// response, which no engine simulates. Scenery takes no time.
 class Bodies {
  public:
-  /// All are absent. The engine must outlive this.
+  /// Starts without present bodies. The engine must outlive this.
   Bodies(PhysicsEngine& engine, const SceneInfo& scene);
 
   [[nodiscard]] std::size_t size() const { return bodies_.size(); }
-  /// Null: not in the engine.
+  /// The body with this id; null if not in the engine.
   [[nodiscard]] PhysicsBody* operator[](std::size_t id) const { return bodies_[id]; }
   /// Ids of the bodies in the engine, ascending, including those that vanished since the last
   /// frame. Valid until a body is added.
   [[nodiscard]] std::span<const std::uint32_t> inEngine();
 
-  /// Adds body `id`, which is absent, to the engine. Its layer and its world are the scene's.
+  /// Adds the absent body `id` to the engine, with the layer and world of the scene.
   PhysicsBody& add(std::size_t id, BodyDescription);
-  /// Removes body `id`, which is in the engine.
+  /// Removes body `id`, which must be in the engine.
   void remove(std::size_t id);
-  /// Makes body `id`, which is absent, part of the scenery.
+  /// Makes the absent body `id` part of the scenery.
   void place(std::size_t id, const Shape&, const Pose&);
 
   /// Records the boxes of all bodies. O(bodies in the engine).
@@ -37,7 +37,7 @@ class Bodies {
   // For the last recorded frame, by id.
   [[nodiscard]] std::span<const Aabb> boxes() const { return boxes_; }
   [[nodiscard]] std::span<const Pose> poses() const { return poses_; }
-  /// As in the body's description.
+  /// The mass in the body's description.
   [[nodiscard]] double massOf(std::size_t id) const { return masses_[id]; }
 
  private:
@@ -47,8 +47,8 @@ class Bodies {
   std::vector<double> masses_;
   std::vector<Aabb> boxes_;
   std::vector<Pose> poses_;
-  std::vector<std::uint32_t> ids_;      ///< in the engine, or vanished since the last frame
-  std::vector<std::uint32_t> arrived_;  ///< bodies that may be missing there
+  std::vector<std::uint32_t> ids_;    ///< in the engine, or vanished since the last frame
+  std::vector<std::uint32_t> added_;  ///< bodies not merged into ids_ yet
   std::vector<std::uint32_t> changed_;
 };
 

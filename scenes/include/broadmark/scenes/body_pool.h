@@ -1,5 +1,5 @@
-// Storage for an engine's bodies with stable addresses; memory is reused. Adding and removing take
-// constant time.
+// Storage for an engine's bodies, with stable addresses and reuse of memory. Adding and removing
+// take constant time.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class BodyPool {
     free_.push_back(slot);
   }
 
-  /// Calls visit(body) for each body, in the order of their slots.
+  /// Calls visit(body) for each body, in slot order.
   template <class Visit>
   void each(const Visit& visit) {
     for (auto& slot : slots_) {
@@ -51,8 +51,8 @@ class BodyPool {
  private:
   struct Slotted final : Body {
     template <class... Arguments>
-    explicit Slotted(std::size_t place, Arguments&&... arguments)
-        : Body(std::forward<Arguments>(arguments)...), slot(place) {}
+    explicit Slotted(std::size_t index, Arguments&&... arguments)
+        : Body(std::forward<Arguments>(arguments)...), slot(index) {}
     std::size_t slot;
   };
 

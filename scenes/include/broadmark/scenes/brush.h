@@ -17,15 +17,15 @@
 
 namespace broadmark::scenes {
 
-/// Determines the number of bodies, and their positions relative to a point. Visits the parameters
-/// that only this brush has. Lengths are in world units.
+/// Determines the number of bodies, and their positions relative to a point. Visits only the
+/// parameters of this brush. Lengths are in world units.
 class Brush : public Parametrised {
  public:
   /// The number of bodies, for bodies of this volume (scale³).
   [[nodiscard]] virtual double count(double body_volume) const = 0;
   /// The position of body `index`, relative to the point.
   [[nodiscard]] virtual Vec3 place(std::size_t index, Random&) const = 0;
-  /// Whether place() is random, so that another call gives another position.
+  /// Whether place() is random, so that another call yields another position.
   [[nodiscard]] virtual bool scatters() const { return false; }
 };
 
@@ -53,13 +53,13 @@ class Paint final : public Parametrised {
   std::int64_t seed = 1;
 };
 
-/// The bodies of one use of a brush.
+/// The result of one use of a brush.
 struct Stroke {
   std::vector<AuthoredBody> bodies;
   std::size_t left_out = 0;  ///< bodies without room
 };
 
-/// The space occupied by bodies: their tight boxes, minus a tolerance. There is a hash grid for
+/// The space occupied by bodies: their tight boxes, minus a tolerance. Uses a hash grid for
 /// each power of two of box sizes, so that neither a floor under thousands of small bodies nor dust
 /// among large bodies crowds a cell: O(1) per body unless sizes differ by orders of magnitude, and
 /// never more than a comparison with every box.
@@ -76,18 +76,18 @@ class OccupiedSpace {
 
   static bool overlapsIn(const Grid& grid, int exponent, const Aabb& box);
 
-  /// By the exponent of the smallest power of two above all edges of the boxes. Cells are twice as
-  /// large as that.
+  /// By the exponent of the smallest power of two above all edges of the boxes; cells are twice as
+  /// large.
   std::map<int, Grid> grids_;
 };
 
-/// Up to `most` bodies placed around the point `at`. Unless the paint allows overlaps, no tight box
-/// overlaps that of another placed body or `taken` beyond the tolerance: a scattering brush tries
-/// other positions, and a body without room is left out. Deterministic. O(placed). Throws
+/// Places up to `max_bodies` bodies around the point `at`. Unless the paint allows overlaps, no
+/// tight box overlaps another placed body's, or `occupied`, beyond the tolerance: a scattering
+/// brush tries other positions, and omits a body without room. Deterministic. O(placed). Throws
 /// InputError if the brush would place more than kMaxBodies.
-Stroke paint(const Brush&, const Paint&, const Vec3& at, const OccupiedSpace& taken,
-             std::size_t most = std::numeric_limits<std::size_t>::max());
-/// The same, among the `present` bodies. O(present + placed).
+Stroke paint(const Brush&, const Paint&, const Vec3& at, const OccupiedSpace& occupied,
+             std::size_t max_bodies = std::numeric_limits<std::size_t>::max());
+/// Places bodies among the `present` bodies. O(present + placed).
 Stroke paint(const Brush&, const Paint&, const Vec3& at, std::span<const AuthoredBody> present);
 
 }  // namespace broadmark::scenes

@@ -56,15 +56,15 @@ class PhysicsBody {
   /// Sets the velocities and wakes the body. No effect on a frozen body.
   virtual void setVelocity(const Vec3& linear, const Vec3& angular) = 0;
 
-  /// At rest until something touches it. A frozen body counts as asleep.
+  /// Whether the body rests until something touches it. A frozen body counts as asleep.
   [[nodiscard]] virtual bool asleep() const = 0;
   [[nodiscard]] virtual bool frozen() const = 0;
   /// Makes the body an immovable obstacle from now on.
   virtual void freeze() = 0;
 };
 
-/// A world of bodies. Deterministic: the same calls give the same bits. Instances are independent.
-/// Visits the parameters that only this engine has; their names must differ from those of the
+/// A world of bodies. Deterministic: the same calls yield the same bits. Instances are independent.
+/// Visits only the parameters of this engine; their names must differ from those of the
 /// settings and of every scene.
 class PhysicsEngine : public Parametrised {
  public:
@@ -73,7 +73,7 @@ class PhysicsEngine : public Parametrised {
   virtual void setLayers(const LayerMatrix&) = 0;
   /// Adds a body. The reference stays valid until the body is removed.
   virtual PhysicsBody& addBody(const BodyDescription&) = 0;
-  /// Removes a body of this engine, and wakes the bodies that it touches.
+  /// Removes a body of this engine, and wakes the bodies touching it.
   virtual void removeBody(PhysicsBody&) = 0;
   virtual void addWall(const HalfSpace&) = 0;
   /// Acceleration of all bodies. A change wakes them.

@@ -1,4 +1,4 @@
-// Portable random numbers: the standard defines the generator, and the sampling is implemented
+// Portable random numbers: the standard defines the generator, but the sampling is implemented
 // here, because the standard's distributions differ between libraries.
 #pragma once
 
@@ -35,7 +35,6 @@ class Random {
     }
   }
 
-  /// Shuffles the elements.
   template <class Element>
   void shuffle(std::vector<Element>& elements) {
     for (std::size_t left = elements.size(); left > 1; --left) {

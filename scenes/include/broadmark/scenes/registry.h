@@ -36,12 +36,12 @@ struct ObjectType {
 };
 
 std::vector<SceneEntry> sceneEntries();
-/// The built-in engines, then those added.
+/// The built-in engines, then the added ones.
 std::vector<EngineEntry> engineEntries();
 std::vector<ObjectType> objectTypes();
 
 /// Adds an engine for the rest of the process. Its id must be new. Not thread-safe with the
-/// creation of simulations, any of which may select the engine from now on.
+/// creation of simulations, which may select the engine from then on.
 void addEngine(EngineEntry);
 
 }  // namespace broadmark::scenes

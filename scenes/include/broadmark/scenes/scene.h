@@ -13,7 +13,7 @@
 
 namespace broadmark::scenes {
 
-/// The objects that a scene acts on. Valid during the call with this argument.
+/// The objects that a scene acts on. Valid only during the call.
 struct Stage {
   const Settings& settings;
   const ObjectType& object_type;
@@ -23,12 +23,12 @@ struct Stage {
 
   /// Body `id`, at rest at the origin, of `size` times the usual size.
   [[nodiscard]] BodyDescription describeBody(std::size_t id, double size = 1) const;
-  /// The same at a random place where it is inside the world in any rotation.
+  /// The same at a random position, inside the world in any rotation.
   [[nodiscard]] BodyDescription describeAnywhere(std::size_t id, double size = 1) const;
 };
 
-/// One implementation per file, listed in CMakeLists.txt. Visits the parameters that only this
-/// scene has.
+/// A scene. One implementation per file, listed in CMakeLists.txt. Visits only the parameters of
+/// this scene.
 class Scene : public Parametrised {
  public:
   /// Adapts the defaults of shared parameters to this scene.
@@ -43,10 +43,10 @@ class Scene : public Parametrised {
     return info.filter.matrix();
   }
 
-  /// Called before the first call of place(): prepares what concerns all bodies.
+  /// Called before the first call of place(): prepares data for all bodies.
   virtual void prepare(const Settings&, Random&) {}
 
-  /// Sets the initial pose and velocity of body `index`. By default a uniformly random position in
+  /// Sets the initial pose and velocity of body `index`: by default a uniformly random position in
   /// a ball around the origin, unrotated, with a random velocity.
   virtual void place(std::size_t index, BodyDescription& body, const Settings&, Random&);
 
@@ -56,7 +56,7 @@ class Scene : public Parametrised {
   /// Called when all bodies are in their initial pose. By default gravity points down.
   virtual void start(Stage& stage);
 
-  /// Called after frame `frame`, 1 or later, when the next one is requested. Bodies that it adds
+  /// Called after frame `frame`, 1 or later, when the next one is requested. Added bodies
   /// move before that frame is recorded.
   virtual void act(Stage&, std::uint32_t /*frame*/) {}
 };

@@ -34,7 +34,7 @@ class SceneEditor {
   explicit SceneEditor(AuthoredScene scene = {}, std::size_t history_bytes = kHistoryBytes);
 
   [[nodiscard]] const AuthoredScene& scene() const { return scene_; }
-  /// Identifies this state of the scene: undo restores it, too.
+  /// Identifies the state of the scene; undo restores the revision, too.
   [[nodiscard]] std::uint64_t revision() const;
   /// Whether the scene has changed since the last markSaved(), or since construction.
   [[nodiscard]] bool isModified() const { return revision() != saved_revision_; }
@@ -43,13 +43,12 @@ class SceneEditor {
   // ---- Selection: not a step
 
   [[nodiscard]] const BodyIds& selection() const { return *selection_; }
-  /// In any order. Throws InputError if there is no such body.
+  /// Selects these bodies, in any order. Throws InputError if there is no such body.
   void select(BodyIds bodies);
   void selectAll();
   void selectNone() { select({}); }
   /// These bodies and all others of their groups, ascending.
   [[nodiscard]] BodyIds withGroups(BodyIds bodies) const;
-  /// The centre of the selected bodies' positions.
   [[nodiscard]] Vec3 selectionCentre() const;
 
   // ---- Edits
@@ -73,7 +72,7 @@ class SceneEditor {
   /// Scales positions and sizes about the common centre.
   void scale(float factor);
   /// Moves each selected body along an axis (0, 1, 2) until the lower bound, middle or upper bound
-  /// of its tight box is that of all of their boxes together.
+  /// of its tight box equals that of the bounds of all their boxes.
   enum class Alignment { low, middle, high };
   void align(std::size_t axis, Alignment alignment);
   /// Sets the edges of boxes, and the diameter of spheres to the first of the three.
@@ -82,13 +81,13 @@ class SceneEditor {
   /// diameter.
   void makeBoxes();
   void makeSpheres();
-  /// Groups the selected bodies, if they are several; they leave their former groups.
+  /// Groups two or more selected bodies, which leave their former groups.
   void group();
   void ungroup();
   // Edits of the scene as a whole.
   void setName(std::string name);
   void setWorld(const Aabb& world);
-  /// States these parameters (see AuthoredParameters). Others keep their values, but those of a
+  /// Sets these parameters (see AuthoredParameters). Others retain their values, but those of a
   /// deselected engine are dropped.
   void setParameters(const ParameterValues& values);
 
@@ -102,7 +101,6 @@ class SceneEditor {
   // No effect without a step to undo or redo.
   void undo();
   void redo();
-  /// Present memory of all steps.
   [[nodiscard]] std::size_t historyBytes() const;
 
  private:
@@ -121,7 +119,8 @@ class SceneEditor {
   void changeScene(std::string name, Value AuthoredScene::*property, Value value,
                    const std::string& fault);
   void addCopies(std::string_view verb, std::vector<AuthoredBody> bodies);
-  /// Adds the bodies in `absent`, or removes these if it is empty.
+  /// Adds the bodies in `absent` under the ids, or removes the bodies with these ids if it is
+  /// empty.
   void changePresence(std::string_view verb, SharedIds ids, std::vector<AuthoredBody> absent,
                       SharedIds selected_after);
   void perform(Step step);

@@ -34,7 +34,7 @@ std::vector<SceneListing> builtinScenes();
 /// How an engine moves the bodies of a scene.
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
-  passing,   ///< as above, but they pass through each other
+  passing,   ///< like rigid, but bodies pass through each other
   scripted,  ///< the engine's own rules, which may ignore gravity, velocities and walls
   replayed,  ///< frames from a recording
 };
@@ -57,7 +57,7 @@ struct RecorderListing {
 };
 std::vector<RecorderListing> builtinRecorders();
 
-/// The engine's own parameters. They are added to those of a scene; those of a replay engine
+/// The parameters of an engine. They are added to a scene's parameters; those of a replay engine
 /// replace them. Throws InputError for an unknown id.
 std::unique_ptr<Parametrised> engineParameters(const std::string& id);
 
@@ -68,7 +68,7 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
  public:
   explicit Simulation(SceneListing listing) : listing_(std::move(listing)) {}
 
-  /// Of a built-in scene; an authored one has the id kAuthoredSceneId.
+  /// The listing of a built-in scene; for an authored one the id is kAuthoredSceneId.
   [[nodiscard]] const SceneListing& listing() const { return listing_; }
   /// The input file besides the parameters: a recording to replay, an authored scene; "": none.
   /// Throws InputError if there is no such recording.
@@ -80,9 +80,9 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
   SceneListing listing_;
 };
 
-/// The simulation of a built-in scene with its default parameters. `scene` is its id or its name in
-/// recordings, case-insensitive; `engine` an engine's id ("": the scene's default). Throws
-/// InputError for an unknown name, and suggests the nearest.
+/// Creates the simulation of a built-in scene with default parameters. `scene` is its id or its
+/// name in recordings, case-insensitive; `engine` an engine's id ("": the scene's default). Throws
+/// InputError for an unknown name, with the nearest as a suggestion.
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
                                            const std::string& engine = {});
 
@@ -97,24 +97,24 @@ inline constexpr std::string_view kBakeSchema = "broadmark-bake/1";
 /// Whether JSON with this schema describes a scene: one of the two above, or an authored scene.
 bool describesScene(std::string_view schema);
 
-/// The simulation described by such a JSON text, built-in or authored. Unstated parameters keep
-/// their defaults. `name`, the text's path if any, is used in messages. Throws InputError with the
-/// key and what would be right.
+/// Creates the simulation described by such a JSON text, built-in or authored. Missing parameters
+/// have their defaults. `name`, the text's path if any, is used in messages. Throws InputError with
+/// the key and the expected value.
 std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
 
-/// Scene and parameters as such a text; for an authored scene the whole document. Round-trips to
-/// the same simulation.
+/// Formats scene and parameters as such a text; for an authored scene the whole document.
+/// Round-trips to the same simulation.
 std::string formatSceneParameters(Simulation&);
 
 /// Whether `path` is a complete recording baked with exactly these parameters and from an input
-/// with the present inputHash(), according to its sidecar, and has the hash stated there.
+/// with the current inputHash(), according to its sidecar, and has the sidecar's hash.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
-/// Whether `path` is an intact baked recording, of any origin: it has the hash stated in its
+/// Whether `path` is an intact baked recording, of any origin: it has the hash in its
 /// sidecar.
 bool isIntact(const std::filesystem::path& path);
 
-/// The hash stated in a recording's sidecar; nothing without a sidecar, or if the file there has
-/// another schema. Throws InputError if a sidecar states no hash.
+/// The hash in a recording's sidecar; nullopt without a sidecar, or if the file there has
+/// another schema. Throws InputError if a sidecar contains no hash.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
 /// A recording's sidecar without the hash, as JSON; "" without a sidecar. Throws InputError.
@@ -126,7 +126,7 @@ void requireBakeable(Simulation& simulation, const std::vector<std::filesystem::
 
 /// Simulates all frames once into recordings at `paths`, each in the format of its extension.
 /// Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with all parameters
-/// and the recording's hash. Returns false when `progress` stopped it; then no file is left. Throws
+/// and the recording's hash. Returns false, and leaves no file, if `progress` stopped it. Throws
 /// InputError.
 bool bake(Simulation& simulation, const std::vector<std::filesystem::path>& paths,
           const FrameProgress& progress = {});

@@ -14,7 +14,6 @@ struct Transformation {
   Vec3 move{};                  ///< in world units, along the world's axes
 };
 
-/// The pose after the transformation.
 Pose transformedPose(const AuthoredBody&, const Transformation&);
 /// The shape after the transformation. Each edge of a box grows by the factor in its direction. A
 /// sphere stays a sphere and grows by the geometric mean of the factors, as its volume requires.
