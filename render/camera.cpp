@@ -103,9 +103,9 @@ Camera figureCamera(const Aabb& box, double aspect) {
   Vector2f high = -low;
   for (int index = 0; index < 8; ++index) {
     const Vector4f point = view * corner(box, index).homogeneous();
-    const Vector2f on_window = point.head<2>() / -point.z();
-    low = low.cwiseMin(on_window);
-    high = high.cwiseMax(on_window);
+    const Vector2f on_plane = point.head<2>() / -point.z();
+    low = low.cwiseMin(on_plane);
+    high = high.cwiseMax(on_plane);
   }
 
   const Vector2f centre = (low + high) / 2;

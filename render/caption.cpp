@@ -14,7 +14,7 @@ namespace {
 
 using Row = std::vector<CaptionItem>;
 
-constexpr float kSmallestLetters = 9;  // pixels; smaller letters are illegible
+constexpr float kMinLetterSize = 9;  // pixels; smaller letters are illegible
 constexpr int kOpaque = 255;
 constexpr int kPanelAlpha = 210;  // the picture just shows through the panel
 
@@ -22,9 +22,9 @@ void blend(Picture& picture, int x, int y, Rgb colour, int alpha) {
   if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return;
   std::uint8_t* pixel = &picture.rgba[4 * (static_cast<std::size_t>(y) * picture.width + x)];
   for (int channel = 0; channel < 3; ++channel) {
-    const int wanted = static_cast<int>((colour >> (16 - 8 * channel)) & 0xFFU);
+    const int target = static_cast<int>((colour >> (16 - 8 * channel)) & 0xFFU);
     pixel[channel] =
-        static_cast<std::uint8_t>((pixel[channel] * (255 - alpha) + wanted * alpha + 127) / 255);
+        static_cast<std::uint8_t>((pixel[channel] * (255 - alpha) + target * alpha + 127) / 255);
   }
 }
 
@@ -90,12 +90,12 @@ class Typeface {
     int height = 0;
     int left = 0;
     int top = 0;
-    const float whole = std::floor(x);
+    const float origin = std::floor(x);
     unsigned char* coverage = stbtt_GetCodepointBitmapSubpixel(
-        &font_, scale_, scale_, x - whole, 0, letter, &width, &height, &left, &top);
+        &font_, scale_, scale_, x - origin, 0, letter, &width, &height, &left, &top);
     for (int row = 0; row < height; ++row) {
       for (int column = 0; column < width; ++column) {
-        blend(picture, static_cast<int>(whole) + left + column, baseline + top + row, colour,
+        blend(picture, static_cast<int>(origin) + left + column, baseline + top + row, colour,
               coverage[row * width + column]);
       }
     }
@@ -110,12 +110,12 @@ class Typeface {
 // Lengths relative to the letter size.
 float gap(const Typeface& face) { return std::round(1.2F * face.size()); }
 int swatchSide(const Typeface& face) { return static_cast<int>(std::round(0.72F * face.size())); }
-float swatchRoom(const Typeface& face) {
+float swatchWidth(const Typeface& face) {
   return static_cast<float>(swatchSide(face)) + std::round(0.45F * face.size());
 }
 
 float itemWidth(const Typeface& face, const CaptionItem& item) {
-  return (item.swatch ? swatchRoom(face) : 0) + face.width(item.text);
+  return (item.swatch ? swatchWidth(face) : 0) + face.width(item.text);
 }
 
 float rowWidth(const Typeface& face, const Row& row) {
@@ -131,7 +131,7 @@ void drawRow(Picture& picture, const Typeface& face, const Row& row, float left,
       const int side = swatchSide(face);
       fill(picture, {static_cast<int>(std::round(left)), baseline - side, side, side}, *item.swatch,
            kOpaque);
-      text_left += swatchRoom(face);
+      text_left += swatchWidth(face);
     }
     face.draw(picture, item.text, text_left, baseline, item.colour);
     left += itemWidth(face, item) + gap(face);
@@ -151,14 +151,14 @@ void drawCaption(Picture& picture, const std::vector<Row>& rows, Rgb background)
     return width;
   };
   const float margin = std::round(1.2F * size);
-  const float room = static_cast<float>(picture.width) - 2 * margin;
-  const float wanted = widest(Typeface(size));
-  if (wanted > room) size = std::floor(size * room / wanted);
+  const float available_width = static_cast<float>(picture.width) - 2 * margin;
+  const float target = widest(Typeface(size));
+  if (target > available_width) size = std::floor(size * available_width / target);
   const auto row_height = static_cast<int>(std::round(1.55F * size));
   const int height = row_height * static_cast<int>(rows.size());
   const auto left = static_cast<int>(margin);
   const int top = picture.height - left - height;
-  if (!(size >= kSmallestLetters) || top < 0) return;
+  if (!(size >= kMinLetterSize) || top < 0) return;
 
   const Typeface face(size);
   const int border = left / 2;

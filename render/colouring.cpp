@@ -1,4 +1,4 @@
-// Every mode assigns the bodies to a few classes, each with a colour and a legend entry.
+// Each mode assigns the bodies to a few classes with a colour and a legend entry.
 #include "broadmark/render/colouring.h"
 
 #include <fmt/format.h>
@@ -25,9 +25,9 @@ void colourByClass(std::span<const Aabb> boxes, std::vector<LegendEntry> legend,
   colouring.legend = std::move(legend);
   for (std::size_t body = 0; body < boxes.size(); ++body) {
     if (isEmpty(boxes[body])) continue;
-    const auto which = static_cast<std::uint8_t>(classOf(body));
-    LegendEntry& entry = colouring.legend[which];
-    colouring.classes[body] = which;
+    const auto class_index = static_cast<std::uint8_t>(classOf(body));
+    LegendEntry& entry = colouring.legend[class_index];
+    colouring.classes[body] = class_index;
     ++entry.count;
     colouring.colours[body] = entry.swatch;
   }
@@ -88,20 +88,19 @@ void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   colourByDifference(
       input, input.missed, input.false_pairs,
-      {{"missed", palette.missed}, {"false", palette.false_pair}, {"right", palette.right}},
+      {{"missed", palette.missed}, {"false", palette.false_pair}, {"correct", palette.right}},
       colouring);
 }
 
-/// Puts all bodies into one class.
-void colourAlike(const ColouringInput& input, const std::string& label, Rgb colour,
-                 Colouring& colouring) {
+void colourUniformly(const ColouringInput& input, const std::string& label, Rgb colour,
+                     Colouring& colouring) {
   colourByClass(input.boxes, {{label, colour}}, colouring, [](std::size_t) { return 0U; });
 }
 
 void colourByTests(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   if (input.tests.size() != input.boxes.size()) {
-    colourAlike(input, "not told", palette.unknown, colouring);
+    colourUniformly(input, "not reported", palette.unknown, colouring);
     return;
   }
   std::uint32_t min_count = std::numeric_limits<std::uint32_t>::max();
@@ -113,7 +112,7 @@ void colourByTests(const ColouringInput& input, Colouring& colouring) {
   std::vector<LegendEntry> legend = {{"0", palette.free}};
   const CountSteps steps(std::min(min_count, max_count), max_count);
   for (std::size_t step = 0; step < steps.size() && max_count > 0; ++step) {
-    legend.push_back({steps.text(step), palette.heat[steps.place(step)]});
+    legend.push_back({steps.text(step), palette.heat[steps.scaleIndex(step)]});
   }
   colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
     const std::uint32_t count = input.tests[body];
@@ -124,7 +123,7 @@ void colourByTests(const ColouringInput& input, Colouring& colouring) {
 void colourByComparison(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   if (input.comparison == nullptr) {
-    colourAlike(input, "no second view", palette.unknown, colouring);
+    colourUniformly(input, "no second view", palette.unknown, colouring);
     return;
   }
   colourByDifference(input, input.comparison->first_only, input.comparison->second_only,
@@ -137,7 +136,7 @@ void colourByComparison(const ColouringInput& input, Colouring& colouring) {
 void colourByMotion(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   if (input.previous.size() != input.boxes.size()) {
-    colourAlike(input, "no previous frame", palette.unknown, colouring);
+    colourUniformly(input, "no previous frame", palette.unknown, colouring);
     return;
   }
   colourByClass(
@@ -148,7 +147,7 @@ void colourByMotion(const ColouringInput& input, Colouring& colouring) {
 void colourByChange(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   if (input.previous.size() != input.boxes.size()) {
-    colourAlike(input, "no previous frame", palette.unknown, colouring);
+    colourUniformly(input, "no previous frame", palette.unknown, colouring);
     return;
   }
   colourByClass(
@@ -163,7 +162,7 @@ void colourByChange(const ColouringInput& input, Colouring& colouring) {
 void colourByLayer(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   if (input.layers.size() != input.boxes.size()) {
-    colourAlike(input, "layer 0", palette.layer[0], colouring);
+    colourUniformly(input, "layer 0", palette.layer[0], colouring);
     return;
   }
   std::array<std::size_t, LayerMatrix::kLayers> entries{};
@@ -190,26 +189,26 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
     largest = std::max(largest, std::min(size, kMaxSize));
   }
   if (!(smallest < largest)) {
-    colourAlike(input, fmt::format("{:.3g}", largest), palette.size[2], colouring);
+    colourUniformly(input, fmt::format("{:.3g}", largest), palette.size[2], colouring);
     return;
   }
   // Steps of equal ratio. Points are in the first step, like the smallest bodies.
   const std::size_t steps = palette.size.size();
-  std::array<float, std::tuple_size_v<decltype(Palette::size)>> begins{};
+  std::array<float, std::tuple_size_v<decltype(Palette::size)>> lower_bounds{};
   std::vector<LegendEntry> legend;
-  const auto border = [&](std::size_t step) {
-    const double part = static_cast<double>(step) / static_cast<double>(steps);
-    return smallest * std::pow(double{largest} / double{smallest}, part);
+  const auto boundary = [&](std::size_t step) {
+    const double fraction = static_cast<double>(step) / static_cast<double>(steps);
+    return smallest * std::pow(double{largest} / double{smallest}, fraction);
   };
   for (std::size_t step = 0; step < steps; ++step) {
-    begins[step] = static_cast<float>(border(step));
+    lower_bounds[step] = static_cast<float>(boundary(step));
     legend.push_back(
-        {fmt::format("{:.3g} to {:.3g}", border(step), border(step + 1)), palette.size[step]});
+        {fmt::format("{:.3g} to {:.3g}", boundary(step), boundary(step + 1)), palette.size[step]});
   }
   colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
     const auto size = static_cast<float>(longestEdge(input.boxes[body]));
     std::size_t step = 0;
-    for (std::size_t i = 1; i < steps; ++i) step += size >= begins[i] ? 1 : 0;
+    for (std::size_t i = 1; i < steps; ++i) step += size >= lower_bounds[i] ? 1 : 0;
     return step;
   });
 }
@@ -219,7 +218,7 @@ constexpr ColourMode kModes[] = {
     {"overlaps", "Number of overlaps", "number of pairs of each body", colourByCount, true},
     {.id = "tests",
      .title = "Tests of boxes",
-     .help = "in how many tests of two boxes each body took part, where the shown algorithm tells",
+     .help = "number of box tests with each body, if the shown algorithm reports them",
      .colour = colourByTests,
      .of_tests = true},
     {"correctness", "Missed and false", "bodies of missed pairs and of false pairs",

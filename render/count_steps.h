@@ -18,12 +18,12 @@ class CountSteps {
 
   /// Bins from `min`, above 0, to `max`.
   CountSteps(std::uint32_t min, std::uint32_t max) : begins_{min}, max_(max) {
-    constexpr double kAlmost = 1 - 1e-9;  // because an integer power may be rounded up
+    constexpr double kRoundingSlack = 1 - 1e-9;  // because an integer power may be rounded up
     for (std::size_t step = 1; step < kMaxSteps && begins_.back() < max; ++step) {
-      const double part = static_cast<double>(step) / kMaxSteps;
-      const double begin = min * std::pow(static_cast<double>(max) / min, part);
-      begins_.push_back(
-          std::max(static_cast<std::uint32_t>(std::ceil(kAlmost * begin)), begins_.back() + 1));
+      const double fraction = static_cast<double>(step) / kMaxSteps;
+      const double begin = min * std::pow(static_cast<double>(max) / min, fraction);
+      begins_.push_back(std::max(static_cast<std::uint32_t>(std::ceil(kRoundingSlack * begin)),
+                                 begins_.back() + 1));
     }
   }
 
@@ -39,7 +39,7 @@ class CountSteps {
     return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
   }
   /// The step's index on a scale of kMaxSteps colours; fewer steps also span the whole scale.
-  [[nodiscard]] std::size_t place(std::size_t step) const {
+  [[nodiscard]] std::size_t scaleIndex(std::size_t step) const {
     return size() == 1 ? kMaxSteps - 1 : step * (kMaxSteps - 1) / (size() - 1);
   }
 

@@ -1,4 +1,4 @@
-// A picture of a frame, as in the paper's figures.
+// Pictures of frames, as in the paper's figures.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const Palette& kPalette = kLightPalette;
 
-/// Whether each body is in a pair. A wrong pair may name absent or non-existing bodies.
+/// Whether each body is in a pair. A wrong pair may name absent or nonexistent bodies.
 std::vector<bool> overlappingBodies(std::span<const Aabb> boxes, PairRuns overlaps) {
   std::vector<bool> overlapping(boxes.size(), false);
   for (const PairRun pair_run : overlaps) {
@@ -35,8 +35,8 @@ std::string counted(std::uint64_t count, std::string_view singular, std::string_
 
 /// Names in a recording may have up to kMaxNameLength characters.
 std::string abbreviated(const std::string& text) {
-  constexpr std::size_t kLongest = 32;
-  return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
+  constexpr std::size_t kMaxLength = 32;
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength - 3) + "...";
 }
 
 void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
@@ -61,9 +61,9 @@ void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
 Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame& frame,
                   PairRuns overlaps, int width, int height) {
   for (const int side : {width, height}) {
-    if (side < 1 || side > kLargestPicture) {
+    if (side < 1 || side > kMaxPictureSide) {
       throw RenderError(fmt::format("a picture of {} x {} cannot be drawn: 1 to {} pixels a side",
-                                    width, height, kLargestPicture));
+                                    width, height, kMaxPictureSide));
     }
   }
   const Gl gl(context);

@@ -1,5 +1,5 @@
-// A pyramid: each block combines the two below it. A query of a range of frames visits the largest
-// blocks inside the range.
+// A pyramid: each block combines two blocks of the level below. A query of a range of frames visits
+// the largest blocks inside the range.
 
 #include "broadmark/render/frame_values.h"
 
@@ -13,15 +13,15 @@ FrameValues::Range united(FrameValues::Range a, FrameValues::Range b) {
   return {std::fmin(a.low, b.low), std::fmax(a.high, b.high)};
 }
 
-/// Calls `at(level, index)` for the largest blocks that partition the frames from `first` to
-/// `last`, in order, until it returns true.
-template <class At>
-void visitBlocks(std::uint64_t first, std::uint64_t last, At&& at) {
+/// Calls visit(level, index) for the largest blocks that partition the frames from `first` to
+/// `last`, in order, until a call returns true.
+template <class Visit>
+void visitBlocks(std::uint64_t first, std::uint64_t last, Visit&& visit) {
   while (first <= last) {
     const auto aligned = static_cast<unsigned>(first == 0 ? 63 : std::countr_zero(first));
     const auto fitting = static_cast<unsigned>(std::bit_width(last - first + 1)) - 1;
     const unsigned level = std::min(aligned, fitting);
-    if (at(level, static_cast<std::uint32_t>(first >> level))) return;
+    if (visit(level, static_cast<std::uint32_t>(first >> level))) return;
     first += std::uint64_t{1} << level;
   }
 }

@@ -16,8 +16,8 @@ GlObject makeRenderbuffer(const Gl& gl, int samples, GLenum format, int width, i
 }
 
 struct PixelFormat {
-  GLint inside;    ///< on the GPU
-  GLenum outside;  ///< in CPU memory
+  GLint internal;   ///< on the GPU
+  GLenum external;  ///< in CPU memory
   GLenum type;
 };
 constexpr PixelFormat kColour = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
@@ -26,7 +26,7 @@ constexpr PixelFormat kDepth = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FL
 GlObject makeTexture(const Gl& gl, const PixelFormat& format, int width, int height) {
   GlObject texture = makeObject(gl.GenTextures, gl.DeleteTextures);
   gl.BindTexture(GL_TEXTURE_2D, texture.get());
-  gl.TexImage2D(GL_TEXTURE_2D, 0, format.inside, width, height, 0, format.outside, format.type,
+  gl.TexImage2D(GL_TEXTURE_2D, 0, format.internal, width, height, 0, format.external, format.type,
                 nullptr);
   for (const GLenum direction : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) {
     gl.TexParameteri(GL_TEXTURE_2D, direction, GL_CLAMP_TO_EDGE);
@@ -39,7 +39,7 @@ GlObject makeTexture(const Gl& gl, const PixelFormat& format, int width, int hei
 
 }  // namespace
 
-Framebuffer::Target Framebuffer::whereComplete(Target target) const {
+Framebuffer::Target Framebuffer::ifComplete(Target target) const {
   const bool complete = gl_->GetError() == GL_NO_ERROR &&
                         gl_->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   return complete ? std::move(target) : Target{};
@@ -54,7 +54,7 @@ Framebuffer::Target Framebuffer::makeTextureTarget() const {
                             target.colour.get(), 0);
   gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth.get(),
                             0);
-  return whereComplete(std::move(target));
+  return ifComplete(std::move(target));
 }
 
 Framebuffer::Target Framebuffer::makeMultisampleTarget(int samples) const {
@@ -66,7 +66,7 @@ Framebuffer::Target Framebuffer::makeMultisampleTarget(int samples) const {
                                target.colour.get());
   gl_->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
                                target.depth.get());
-  return whereComplete(std::move(target));
+  return ifComplete(std::move(target));
 }
 
 Framebuffer::Framebuffer(const Gl& gl, int width, int height, int samples)
@@ -78,7 +78,7 @@ Framebuffer::Framebuffer(const Gl& gl, int width, int height, int samples)
   }
   resolved_ = makeTextureTarget();
   if (resolved_.framebuffer.get() == 0) {
-    throw RenderError(fmt::format("OpenGL has no room for a picture of {} x {}", width, height));
+    throw RenderError(fmt::format("OpenGL has no memory for a picture of {} x {}", width, height));
   }
   samples = std::min(samples, gl.integer(GL_MAX_SAMPLES));
   // If several samples per pixel do not fit, drawn_ is empty and drawing uses the textures.
@@ -94,9 +94,9 @@ void Framebuffer::bind() const {
 void Framebuffer::write(std::span<const std::uint32_t> rgba) const {
   gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
   gl_->BindTexture(GL_TEXTURE_2D, resolved_.colour.get());
-  gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, kColour.outside, kColour.type,
+  gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, kColour.external, kColour.type,
                      rgba.data());
-  gl_->check("handing a picture to OpenGL");
+  gl_->check("uploading a picture");
 }
 
 void Framebuffer::resolve() const {

@@ -41,7 +41,7 @@ Vector3f centreOf(const Aabb& box) {
 }
 
 /// An angle in (-pi, pi], so that the camera turns by the smaller angle.
-float shortestTurn(float angle) { return std::remainder(angle, kFullTurn); }
+float wrappedAngle(float angle) { return std::remainder(angle, kFullTurn); }
 
 float smooth(float t) {
   const float clamped = std::clamp(t, 0.0F, 1.0F);
@@ -58,7 +58,7 @@ std::pair<float, float> distancesTo(const Aabb& box, const Vector3f& point) {
 
 }  // namespace
 
-OrbitCamera lookedFrom(OrbitCamera camera, Direction direction) {
+OrbitCamera viewedFrom(OrbitCamera camera, Direction direction) {
   constexpr float kQuarter = kFullTurn / 4;
   camera.yaw = camera.pitch = 0;
   switch (direction) {
@@ -88,7 +88,7 @@ OrbitCamera lookedFrom(OrbitCamera camera, Direction direction) {
 }
 
 OrbitCamera orbited(OrbitCamera camera, float yaw, float pitch) {
-  camera.yaw = shortestTurn(camera.yaw + yaw);
+  camera.yaw = wrappedAngle(camera.yaw + yaw);
   camera.pitch = std::clamp(camera.pitch + pitch, -OrbitCamera::kSteepest, OrbitCamera::kSteepest);
   return camera;
 }
@@ -127,20 +127,21 @@ OrbitCamera focusedOn(OrbitCamera camera, const Aabb& box, double aspect) {
     const Vector3f signs((corner & 1) != 0 ? 1.0F : -1.0F, (corner & 2) != 0 ? 1.0F : -1.0F,
                          (corner & 4) != 0 ? 1.0F : -1.0F);
     const Vector3f point = half_sides.cwiseProduct(signs);
-    const float beside = std::max(std::abs(point.dot(rightwards(camera))) / half_width,
-                                  std::abs(point.dot(upwards(camera))) / half_height);
-    distance = std::max(distance, point.dot(backwards(camera)) + kMargin * beside);
+    const float offset_distance = std::max(std::abs(point.dot(rightwards(camera))) / half_width,
+                                           std::abs(point.dot(upwards(camera))) / half_height);
+    distance = std::max(distance, point.dot(backwards(camera)) + kMargin * offset_distance);
   }
   camera.distance = std::clamp(distance, OrbitCamera::kNearest, OrbitCamera::kFarthest);
   return withPivot(camera, centreOf(box));
 }
 
 OrbitCamera cutAway(OrbitCamera camera, const Aabb& box) {
-  constexpr float kRoom = 0.98F;
+  constexpr float kMarginFactor = 0.98F;
   const Vector3f half_sides = (Vector3f(box.max.data()) - Vector3f(box.min.data())) / 2;
   const float towards_eye = (centreOf(box) - pivotOf(camera)).dot(backwards(camera)) +
                             half_sides.dot(backwards(camera).cwiseAbs());
-  camera.cut = std::clamp(kRoom * (1 - towards_eye / camera.distance), OrbitCamera::kUncut, kRoom);
+  camera.cut = std::clamp(kMarginFactor * (1 - towards_eye / camera.distance), OrbitCamera::kUncut,
+                          kMarginFactor);
   return camera;
 }
 
@@ -148,7 +149,7 @@ OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t) {
   const float s = smooth(t);
   if (s >= 1) return to;
   OrbitCamera camera = from;
-  camera.yaw = from.yaw + s * shortestTurn(to.yaw - from.yaw);
+  camera.yaw = from.yaw + s * wrappedAngle(to.yaw - from.yaw);
   camera.pitch = std::lerp(from.pitch, to.pitch, s);
   camera.cut = std::lerp(from.cut, to.cut, s);
   camera.field_of_view = std::lerp(from.field_of_view, to.field_of_view, s);

@@ -15,13 +15,13 @@ namespace {
 constexpr float kStructureWidth = 1;
 constexpr float kPopulationWidth = 2;  // wide enough for colours to be visible
 
-std::array<float, 3> middleOf(const Aabb& box) {
-  std::array<float, 3> middle;
+std::array<float, 3> centrePoint(const Aabb& box) {
+  std::array<float, 3> centre;
   // Halved first, because the sum of two large coordinates may overflow.
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    middle[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+    centre[axis] = box.min[axis] / 2 + box.max[axis] / 2;
   }
-  return middle;
+  return centre;
 }
 
 template <class Item>
@@ -29,11 +29,11 @@ void addUpTo(std::size_t limit, std::vector<Item>& items, const Item& item, Over
   if (items.size() < limit) {
     items.push_back(item);
   } else {
-    ++overlay.left_out;
+    ++overlay.dropped;
   }
 }
 
-Aabb boundsOf(const RecordedDrawing::Line& line) {
+Aabb boundsOf(const RecordedDrawing::Segment& line) {
   Aabb bounds;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::tie(bounds.min[axis], bounds.max[axis]) = std::minmax(line.from[axis], line.to[axis]);
@@ -64,15 +64,15 @@ Rgb colourOf(StructureRole role, const Palette& palette) {
 std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& boxes,
                                             const Palette& palette, std::vector<Rgb>& colours) {
   std::ranges::stable_sort(boxes, std::ranges::greater(), &RecordedDrawing::Box::population);
-  const auto told = static_cast<std::size_t>(
+  const auto count = static_cast<std::size_t>(
       std::ranges::count_if(boxes, [](const auto& box) { return box.population > 0; }));
-  if (told == 0) return {};
-  const CountSteps steps(boxes[told - 1].population, boxes.front().population);
+  if (count == 0) return {};
+  const CountSteps steps(boxes[count - 1].population, boxes.front().population);
   std::vector<LegendEntry> legend;
   for (std::size_t step = 0; step < steps.size(); ++step) {
-    legend.push_back({steps.text(step), palette.population[steps.place(step)]});
+    legend.push_back({steps.text(step), palette.population[steps.scaleIndex(step)]});
   }
-  for (const RecordedDrawing::Box& box : std::span(boxes).first(told)) {
+  for (const RecordedDrawing::Box& box : std::span(boxes).first(count)) {
     LegendEntry& entry = legend[steps.stepOf(box.population)];
     colours.push_back(entry.swatch);
     ++entry.count;
@@ -84,20 +84,20 @@ std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& b
 
 Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineStyle& style,
                   std::optional<std::span<const std::uint32_t>> only) {
-  std::vector<bool> is_wanted(boxes.size(), !only.has_value());
+  std::vector<bool> is_selected(boxes.size(), !only.has_value());
   if (only) {
     for (const std::uint32_t body : *only) {
-      if (body < boxes.size()) is_wanted[body] = true;
+      if (body < boxes.size()) is_selected[body] = true;
     }
   }
   Overlay overlay;
   for (const PairRun pair_run : pairs) {
     for (const Pair pair : pair_run) {
       if (pair.a >= boxes.size() || pair.b >= boxes.size()) continue;
-      if (!is_wanted[pair.a] && !is_wanted[pair.b]) continue;
+      if (!is_selected[pair.a] && !is_selected[pair.b]) continue;
       if (isEmpty(boxes[pair.a]) || isEmpty(boxes[pair.b])) continue;
-      addUpTo(style.most, overlay.lines,
-              {middleOf(boxes[pair.a]), middleOf(boxes[pair.b]), style.colour, style.width,
+      addUpTo(style.max_lines, overlay.lines,
+              {centrePoint(boxes[pair.a]), centrePoint(boxes[pair.b]), style.colour, style.width,
                style.behind},
               overlay);
     }
@@ -105,28 +105,28 @@ Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineSty
   return overlay;
 }
 
-Overlay structureOverlay(const RecordedDrawing& drawing, const StructureLook& look) {
-  const auto is_near = [&](const Aabb& box) { return !look.near || overlaps(box, *look.near); };
+Overlay structureOverlay(const RecordedDrawing& drawing, const StructureStyle& style) {
+  const auto is_near = [&](const Aabb& box) { return !style.near || overlaps(box, *style.near); };
   std::vector<RecordedDrawing::Box> boxes;
   for (const RecordedDrawing::Box& box : drawing.boxes()) {
-    if (box.level < look.first_level || box.level > look.last_level) continue;
+    if (box.level < style.first_level || box.level > style.last_level) continue;
     if (is_near(box.box)) boxes.push_back(box);
   }
   Overlay overlay;
-  const Palette& palette = paletteOf(look.dark);
+  const Palette& palette = paletteOf(style.dark);
   std::vector<Rgb> by_population;  // the colours of the first boxes
-  if (look.by_population) overlay.legend = colourByPopulation(boxes, palette, by_population);
+  if (style.by_population) overlay.legend = colourByPopulation(boxes, palette, by_population);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const bool told = i < by_population.size();
-    addUpTo(look.most, overlay.boxes,
-            {boxes[i].box, told ? by_population[i] : colourOf(boxes[i].role, palette),
-             told ? kPopulationWidth : kStructureWidth},
+    const bool count = i < by_population.size();
+    addUpTo(style.max_items, overlay.boxes,
+            {boxes[i].box, count ? by_population[i] : colourOf(boxes[i].role, palette),
+             count ? kPopulationWidth : kStructureWidth},
             overlay);
   }
-  if (look.by_population) std::ranges::reverse(overlay.boxes);
-  for (const RecordedDrawing::Line& line : drawing.lines()) {
+  if (style.by_population) std::ranges::reverse(overlay.boxes);
+  for (const RecordedDrawing::Segment& line : drawing.lines()) {
     if (!is_near(boundsOf(line))) continue;
-    addUpTo(look.most, overlay.lines,
+    addUpTo(style.max_items, overlay.lines,
             {line.from, line.to, colourOf(line.role, palette), kStructureWidth}, overlay);
   }
   return overlay;
@@ -136,7 +136,7 @@ bool hasPopulations(const RecordedDrawing& drawing) {
   return std::ranges::any_of(drawing.boxes(), [](const auto& box) { return box.population > 0; });
 }
 
-int deepestLevel(const RecordedDrawing& drawing) {
+int maxLevel(const RecordedDrawing& drawing) {
   int deepest = 0;
   for (const RecordedDrawing::Box& box : drawing.boxes()) deepest = std::max(deepest, box.level);
   return deepest;

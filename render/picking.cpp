@@ -1,5 +1,5 @@
-// Picking tests a ray against the slabs of each box; selecting tests each box against the planes of
-// a frustum. O(n). Double precision preserves distant and tiny bodies.
+// Picking tests a ray against the slabs of each box; selection tests each box against the planes of
+// a frustum. O(n). Double precision is needed for distant and tiny bodies.
 #include "broadmark/render/picking.h"
 
 #include <Eigen/Core>
@@ -29,22 +29,22 @@ std::array<float, 2> onWindow(const Viewpoint& viewpoint, float x, float y) {
           camera.window_min[1] + v * (camera.window_max[1] - camera.window_min[1])};
 }
 
-bool counts(std::span<const Aabb> boxes, BodyMask mask, std::size_t body) {
+bool isPickable(std::span<const Aabb> boxes, BodyMask mask, std::size_t body) {
   return !isEmpty(boxes[body]) && (mask.empty() || mask[body] != 0);
 }
 
 /// The corners of a box relative to the eye, in view units.
-struct SeenBox {
+struct ViewBox {
   Vector low;
   Vector high;
 };
 
-SeenBox seenBox(const Aabb& box, const Vector& eye, double scale) {
+ViewBox toViewBox(const Aabb& box, const Vector& eye, double scale) {
   return {(widened(box.min) - eye) * scale, (widened(box.max) - eye) * scale};
 }
 
 /// Enlarges every side to at least a given number of pixels, like the box shader.
-void enlarge(SeenBox& box, const Vector& forward, double half_side_at_1) {
+void enlarge(ViewBox& box, const Vector& forward, double half_side_at_1) {
   const Vector centre = (box.low + box.high) / 2;
   const double half = half_side_at_1 * centre.dot(forward);
   box.low = box.low.cwiseMin((centre.array() - half).matrix());
@@ -73,11 +73,11 @@ std::array<Plane, 5> frustum(const Viewpoint& viewpoint, const ScreenRectangle& 
           plane(0, -1, -high[1], 0), plane(0, 0, -1, viewpoint.camera.near)};
 }
 
-bool isWithin(const std::array<Plane, 5>& planes, const SeenBox& box) {
+bool isWithin(const std::array<Plane, 5>& planes, const ViewBox& box) {
   return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-    const auto least_corner =
+    const auto min_corner =
         plane.normal.cwiseProduct(box.low).cwiseMin(plane.normal.cwiseProduct(box.high));
-    return least_corner.sum() >= plane.offset;
+    return min_corner.sum() >= plane.offset;
   });
 }
 
@@ -100,35 +100,35 @@ Ray rayThrough(const Viewpoint& viewpoint, float x, float y) {
 
 std::optional<PickedBody> pickBody(std::span<const Aabb> boxes, const ViewSpace& space,
                                    const Viewpoint& viewpoint, float x, float y, BodyMask mask,
-                                   float smallest) {
+                                   float min_pixels) {
   const Camera& camera = viewpoint.camera;
   const Vector eye = eyeInWorld(camera, space);
   const double scale = 1 / space.side;
   const Vector direction = widened(rayThrough(viewpoint, x, y).direction);
   const Vector inverse = direction.cwiseInverse();
   const Vector forward = -widened(axesOf(camera).back);
-  const double half_side = double{smallest} * double{pixelSize(camera, viewpoint.height)};
+  const double half_side = double{min_pixels} * double{pixelSize(camera, viewpoint.height)};
 
   std::optional<PickedBody> picked;
   double nearest = camera.far;
   for (std::size_t body = 0; body < boxes.size(); ++body) {
-    if (!counts(boxes, mask, body)) continue;
-    SeenBox box = seenBox(boxes[body], eye, scale);
+    if (!isPickable(boxes, mask, body)) continue;
+    ViewBox box = toViewBox(boxes[body], eye, scale);
     enlarge(box, forward, half_side);
     double enter = camera.near;
     double leave = nearest;
-    bool is_before = false;  // whether the box is in front of the eye, not around it
+    bool is_in_front = false;  // whether the box is in front of the eye, not around it
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // A ray in the plane of a face may give NaN. One of two boxes that share the face is then
+      // A ray in the plane of a face may yield NaN. Then one of two boxes that share the face is
       // hit.
       const double a = box.low[axis] * inverse[axis];
       const double b = box.high[axis] * inverse[axis];
       const double first = std::min(a, b);
-      is_before = is_before || first >= camera.near;
+      is_in_front = is_in_front || first >= camera.near;
       enter = std::max(enter, first);
       leave = std::min(leave, std::max(a, b));
     }
-    if (!is_before || enter > leave || !(enter < nearest)) continue;
+    if (!is_in_front || enter > leave || !(enter < nearest)) continue;
     nearest = enter;
     picked = PickedBody{static_cast<std::uint32_t>(body), static_cast<float>(enter)};
   }
@@ -143,8 +143,8 @@ std::vector<std::uint32_t> bodiesWithin(std::span<const Aabb> boxes, const ViewS
   const std::array planes = frustum(viewpoint, rectangle);
   std::vector<std::uint32_t> bodies;
   for (std::size_t body = 0; body < boxes.size(); ++body) {
-    if (!counts(boxes, mask, body)) continue;
-    SeenBox box = seenBox(boxes[body], eye, 1 / space.side);
+    if (!isPickable(boxes, mask, body)) continue;
+    ViewBox box = toViewBox(boxes[body], eye, 1 / space.side);
     if (by == SelectBy::centre) box.low = box.high = (box.low + box.high) / 2;
     if (isWithin(planes, box)) bodies.push_back(static_cast<std::uint32_t>(body));
   }

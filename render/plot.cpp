@@ -238,7 +238,7 @@ void drawSpan(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
   draw.AddLine({right, axes.min.y}, {right, axes.max.y}, colours.playhead);
 }
 
-void showValue(const PlotCurve* curve, std::uint32_t frame) {
+void writeValue(const PlotCurve* curve, std::uint32_t frame) {
   if (curve == nullptr || std::isnan(curve->values->at(frame))) return;
   const std::string text =
       fmt::format("{} {}", curve->label, withPrefix(curve->values->at(frame), ""));
@@ -272,8 +272,8 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
     draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
   }
   if (!known) ImGui::TextUnformatted("not run yet");
-  showValue(options.thin, frame);
-  showValue(options.area, frame);
+  writeValue(options.thin, frame);
+  writeValue(options.area, frame);
   ImGui::EndTooltip();
 }
 
@@ -293,26 +293,26 @@ std::vector<PlotEntry> entriesOf(const std::vector<PlotCurve>& curves, const Plo
 void handleMouse(const Axes& axes, const PlotOptions& options, PlotResult& result) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 pressed = io.MouseClickedPos[0];
-  const double here = axes.frameAt(std::clamp(io.MousePos.x, axes.min.x, axes.max.x));
+  const double frame_at_mouse = axes.frameAt(std::clamp(io.MousePos.x, axes.min.x, axes.max.x));
   const bool across = pressed.x >= axes.min.x && pressed.x <= axes.max.x;
-  const bool on_numbers = across && pressed.y > axes.max.y;
+  const bool on_labels = across && pressed.y > axes.max.y;
   const bool is_drag = io.MouseDragMaxDistanceSqr[0] > kClickPixels * kClickPixels;
   if (ImGui::IsItemActive() && io.MouseDown[0]) {
-    if (on_numbers) {
-      result.clicked_frame = here;
+    if (on_labels) {
+      result.clicked_frame = frame_at_mouse;
     } else if (across && is_drag) {
-      result.dragged = {axes.frameAt(pressed.x), here};
+      result.dragged = {axes.frameAt(pressed.x), frame_at_mouse};
     }
   } else if (ImGui::IsItemActive() && (io.MouseDown[1] || io.MouseDown[2])) {
     result.moved = axes.frameAt(0) - axes.frameAt(io.MouseDelta.x);
   }
   if (ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(0) && across && !is_drag) {
     const auto marked = markedFrame(axes, options, pressed);
-    result.clicked_frame = marked ? *marked : here;
+    result.clicked_frame = marked ? *marked : frame_at_mouse;
   }
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
     result.zoom = static_cast<double>(io.MouseWheel);
-    result.zoom_at = here;
+    result.zoom_at = frame_at_mouse;
   }
 }
 

@@ -53,9 +53,9 @@ std::vector<double> valueTicks(const PlotScale& scale) {
   const int rows = std::max(2, static_cast<int>(height / (2.2F * line)));
   std::vector<double> ticks;
   for (const double tick : axisTicks(scale.low, scale.high, rows, scale.logarithmic)) {
-    const bool apart =
+    const bool is_separate =
         ticks.empty() || std::abs(scale.pixelOf(ticks.back()) - scale.pixelOf(tick)) >= line;
-    if (apart) ticks.push_back(tick);
+    if (is_separate) ticks.push_back(tick);
   }
   return ticks;
 }

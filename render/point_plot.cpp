@@ -10,9 +10,9 @@
 namespace broadmark {
 namespace {
 
-constexpr float kPointRadius = 3.2F;  // for lines of text of 15 pixels
-constexpr float kHoverRadius = 10;    // maximum distance of the mouse from a hovered point
-constexpr double kRoomAcross = 0.05;  // margin beyond the outermost points, relative to the axis
+constexpr float kPointRadius = 3.2F;    // for lines of text of 15 pixels
+constexpr float kHoverRadius = 10;      // maximum distance of the mouse from a hovered point
+constexpr double kMarginAcross = 0.05;  // margin beyond the outermost points, relative to the axis
 
 /// Scales that contain all points.
 struct PointAxes {
@@ -28,12 +28,13 @@ struct PointAxes {
     across.logarithmic = true;
     if (numbers.empty()) return;
     values.fit({static_cast<float>(*all_values.begin()), static_cast<float>(*all_values.rbegin())});
-    const double room = std::max(std::pow(*numbers.rbegin() / *numbers.begin(), kRoomAcross), 1.05);
-    across.low = *numbers.begin() / room;
-    across.high = *numbers.rbegin() * room;
+    const double margin =
+        std::max(std::pow(*numbers.rbegin() / *numbers.begin(), kMarginAcross), 1.05);
+    across.low = *numbers.begin() / margin;
+    across.high = *numbers.rbegin() * margin;
   }
 
-  [[nodiscard]] ImVec2 placeOf(const PlotPoint& point) const {
+  [[nodiscard]] ImVec2 positionOf(const PlotPoint& point) const {
     return {across.pixelOf(point.across), values.pixelOf(point.value)};
   }
 
@@ -47,24 +48,24 @@ void drawNumbers(ImDrawList& draw, const PointAxes& axes, const char* across,
                  const PlotColours& colours) {
   const float top = axes.values.high_pixel;
   const float bottom = axes.values.low_pixel;
-  float free_from = std::numeric_limits<float>::lowest();
+  float next_free_x = std::numeric_limits<float>::lowest();
   for (const double number : axes.numbers) {
     const float x = axes.across.pixelOf(number);
     draw.AddLine({x, top}, {x, bottom}, colours.grid);
     const std::string text = withPrefix(number, "");
     const float half = ImGui::CalcTextSize(text.c_str()).x / 2;
-    if (x - half < free_from) continue;
+    if (x - half < next_free_x) continue;
     draw.AddText({x - half, bottom + 2}, colours.text, text.c_str());
-    free_from = x + half + ImGui::GetTextLineHeight() / 2;
+    next_free_x = x + half + ImGui::GetTextLineHeight() / 2;
   }
-  draw.AddText({std::max(free_from, axes.across.high_pixel), bottom + 2}, colours.text, across);
+  draw.AddText({std::max(next_free_x, axes.across.high_pixel), bottom + 2}, colours.text, across);
 }
 
 void drawCurve(ImDrawList& draw, const PointCurve& curve, const PointAxes& axes, float width) {
   const ImU32 colour = packed(curve.colour);
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    const ImVec2 at = axes.placeOf(curve.points[i]);
-    if (i > 0) draw.AddLine(axes.placeOf(curve.points[i - 1]), at, colour, width);
+    const ImVec2 at = axes.positionOf(curve.points[i]);
+    if (i > 0) draw.AddLine(axes.positionOf(curve.points[i - 1]), at, colour, width);
     draw.AddCircleFilled(at, width * kPointRadius / kPlotLineWidth, colour, 16);
   }
 }
@@ -116,14 +117,14 @@ PointPlotResult drawPointPlot(const char* id, const std::vector<PointCurve>& cur
   draw.AddRectFilled(min, max, colours.background, 3);
   drawValueLines(draw, axes.values, min.x, max.x, options.unit, colours);
   drawNumbers(draw, axes, options.across, colours);
-  const auto named =
+  const auto hovered_entry =
       drawLegend(draw, entries, {max.x + line / 2, min.y}, {corner.x + width, max.y}, colours);
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const bool stands_out = hovered && named == i;
-    drawCurve(draw, curves[i], axes, (stands_out ? 2 : 1) * kPlotLineWidth * line / 15);
+    const bool highlighted = hovered && hovered_entry == i;
+    drawCurve(draw, curves[i], axes, (highlighted ? 2 : 1) * kPlotLineWidth * line / 15);
     for (std::size_t point = 0; point < curves[i].points.size(); ++point) {
       result.drawn.push_back(
-          {.curve = i, .point = point, .at = axes.placeOf(curves[i].points[point])});
+          {.curve = i, .point = point, .at = axes.positionOf(curves[i].points[point])});
     }
   }
   draw.AddRect(min, max, colours.frame, 3);

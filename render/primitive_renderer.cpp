@@ -3,20 +3,20 @@
 #include <algorithm>
 
 #include "broadmark/render/colour.h"
-#include "look.h"
 #include "render_assets.h"
+#include "shading.h"
 
 namespace broadmark {
 namespace {
 
 constexpr std::size_t kTexelsPerPrimitive = 2;
 
-std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t wanted) {
+std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t requested) {
   const auto texels = static_cast<std::size_t>(gl.integer(GL_MAX_TEXTURE_BUFFER_SIZE));
   // gl_VertexID is a signed 32-bit integer.
   const auto vertices = static_cast<std::size_t>(std::numeric_limits<GLsizei>::max());
   return std::max<std::size_t>(
-      1, std::min({wanted, texels / kTexelsPerPrimitive,
+      1, std::min({requested, texels / kTexelsPerPrimitive,
                    vertices / static_cast<std::size_t>(vertices_per_primitive)}));
 }
 
@@ -59,12 +59,13 @@ PrimitiveRenderer boxRenderer(const Gl& gl, std::size_t max_batch) {
   PrimitiveRenderer renderer(gl, render_assets::box_vert(), render_assets::box_frag(), kVertices,
                              max_batch);
   renderer.use();
-  gl.Uniform3f(renderer.uniform("light"), kBoxLook.light[0], kBoxLook.light[1], kBoxLook.light[2]);
-  gl.Uniform1f(renderer.uniform("underside"), kBoxLook.underside);
-  gl.Uniform1f(renderer.uniform("edge_darkness"), kBoxLook.edge_darkness);
-  gl.Uniform1f(renderer.uniform("foot_darkness"), kBoxLook.foot_darkness);
-  gl.Uniform1f(renderer.uniform("most_haze"), kBoxLook.haze);
-  gl.Uniform2f(renderer.uniform("haze_range"), -kBoxLook.haze_before, kBoxLook.haze_behind);
+  gl.Uniform3f(renderer.uniform("light"), kBoxShading.light[0], kBoxShading.light[1],
+               kBoxShading.light[2]);
+  gl.Uniform1f(renderer.uniform("underside"), kBoxShading.underside);
+  gl.Uniform1f(renderer.uniform("edge_darkness"), kBoxShading.edge_darkness);
+  gl.Uniform1f(renderer.uniform("foot_darkness"), kBoxShading.foot_darkness);
+  gl.Uniform1f(renderer.uniform("most_haze"), kBoxShading.haze);
+  gl.Uniform2f(renderer.uniform("haze_range"), -kBoxShading.haze_before, kBoxShading.haze_behind);
   return renderer;
 }
 
@@ -72,7 +73,7 @@ PrimitiveRenderer lineRenderer(const Gl& gl) {
   constexpr int kVertices = 6;
   PrimitiveRenderer renderer(gl, render_assets::line_vert(), render_assets::line_frag(), kVertices);
   renderer.use();
-  gl.Uniform1f(renderer.uniform("lift"), kLineLook.lift);
+  gl.Uniform1f(renderer.uniform("lift"), kLineShading.lift);
   return renderer;
 }
 

@@ -38,8 +38,8 @@ class PrimitiveBuffer {
   std::vector<Batch> batches_;
 };
 
-/// Draws primitives of a kind from any viewpoint. Requires its context to be current from
-/// construction to destruction.
+/// Draws primitives of one kind from any viewpoint. Requires its context to be current during
+/// its lifetime.
 class PrimitiveRenderer {
  public:
   /// Draws at most `max_batch` primitives per call, or fewer if the driver's buffer textures are
@@ -53,7 +53,7 @@ class PrimitiveRenderer {
   /// Draws into the current framebuffer. The opacity requires blending. Throws RenderError.
   void draw(const PrimitiveBuffer& primitives, const Viewpoint& viewpoint, float opacity = 1) const;
 
-  /// Call before setting uniforms that are the same in all pictures.
+  /// Must be called before setting uniforms that are the same in all pictures.
   void use() const { gl_->UseProgram(program_.get()); }
   [[nodiscard]] GLint uniform(const char* name) const;
 

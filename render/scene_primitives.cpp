@@ -10,7 +10,8 @@
 namespace broadmark {
 namespace {
 
-/// More outlines cost time without information, because the tint also shows the selection.
+/// More outlines would cost time without adding information, because the tint also shows the
+/// selection.
 constexpr std::size_t kMaxOutlines = 2000;
 constexpr float kOutlineWidth = 1.8F;
 constexpr float kSelectionTint = 0.45F;
@@ -24,7 +25,6 @@ Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space, floa
   return {space.toView(box.min), static_cast<float>(colour), space.toView(box.max), width};
 }
 
-/// The twelve edges of a box.
 std::vector<Primitive> wireframe(const Aabb& box, Rgb colour, float width, const ViewSpace& space) {
   const std::array ends = {space.toView(box.min), space.toView(box.max)};
   const auto corner = [&](std::size_t index) {
@@ -96,24 +96,24 @@ void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTe
   // The visible bodies of a worker's share follow those of the previous workers.
   const std::size_t count = content.boxes.size();
   std::vector<std::size_t> begins(static_cast<std::size_t>(team.size()) + 1, 0);
-  team.run(count, [&](int worker, Range part) {
+  team.run(count, [&](int worker, Range share) {
     std::size_t visible = 0;
-    for (std::size_t body = part.begin; body < part.end; ++body)
+    for (std::size_t body = share.begin; body < share.end; ++body)
       visible += is_visible(body) ? 1 : 0;
     begins[static_cast<std::size_t>(worker) + 1] = visible;
   });
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   scene.boxes.resize(begins.back());
-  team.run(count, [&](int worker, Range part) {
+  team.run(count, [&](int worker, Range share) {
     auto box =
         scene.boxes.begin() + static_cast<std::ptrdiff_t>(begins[static_cast<std::size_t>(worker)]);
-    for (std::size_t body = part.begin; body < part.end; ++body) {
+    for (std::size_t body = share.begin; body < share.end; ++body) {
       if (!is_visible(body)) continue;
       Rgb colour = content.colours[body];
       if (!is_selected.empty() && is_selected[body]) {
         colour = mixed(colour, content.theme.selected, kSelectionTint);
       }
-      *box++ = boxPrimitive(content.boxes[body], colour, content.space, kBoxLook.smallest_pixels);
+      *box++ = boxPrimitive(content.boxes[body], colour, content.space, kBoxShading.min_pixels);
     }
   });
 }

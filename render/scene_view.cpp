@@ -15,7 +15,7 @@
 namespace broadmark {
 namespace {
 
-/// Restores framebuffer and viewport.
+/// Restores framebuffer and viewport on destruction.
 class TargetGuard {
  public:
   explicit TargetGuard(const Gl& gl) : gl_(&gl), framebuffer_(gl.integer(GL_FRAMEBUFFER_BINDING)) {
@@ -39,9 +39,9 @@ bool splats(const Gl& gl, Technique technique) {
          (technique == Technique::automatic && isSoftwareRenderer(gl));
 }
 
-int samplesOf(const Gl& gl, int wanted, bool is_splatting) {
+int samplesOf(const Gl& gl, int requested, bool is_splatting) {
   if (is_splatting) return 1;
-  if (wanted != 0) return wanted;
+  if (requested != 0) return requested;
   return isSoftwareRenderer(gl) ? 1 : Framebuffer::kSamples;
 }
 
@@ -105,11 +105,11 @@ std::vector<Primitive> axesCross(const Camera& camera, const Palette& theme, flo
 bool isSoftwareRenderer(const Gl& gl) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
   const std::string_view name = text != nullptr ? text : "";
-  const auto is_in_name = [&](const char* part) {
+  const auto name_contains = [&](const char* part) {
     return name.find(part) != std::string_view::npos;
   };
-  return is_in_name("llvmpipe") || is_in_name("softpipe") || is_in_name("SWR") ||
-         is_in_name("Software") || is_in_name("SwiftShader");
+  return name_contains("llvmpipe") || name_contains("softpipe") || name_contains("SWR") ||
+         name_contains("Software") || name_contains("SwiftShader");
 }
 
 /// Stores boxes and lines as primitives, and rebuilds them only if the content has changed.
@@ -126,15 +126,15 @@ class SceneView::Painter {
 
   /// Applies changes of the content. Returns whether anything has changed.
   bool update(const SceneViewContent& content) {
-    const Drawn wanted{content.bodies_revision, content.lines_revision, content.space,
-                       content.world,           content.theme,          content.shows_world,
-                       content.shows_grid,      content.shows_axes,     content.scale};
-    if (drawn_ == wanted) return false;
-    const bool all = !drawn_ || drawn_->space != wanted.space;
-    const bool bodies = all || drawn_->bodies_revision != wanted.bodies_revision ||
-                        drawn_->theme != wanted.theme || drawn_->scale != wanted.scale;
-    const bool lines =
-        all || drawn_->lines_revision != wanted.lines_revision || drawn_->scale != wanted.scale;
+    const ContentState state{content.bodies_revision, content.lines_revision, content.space,
+                             content.world,           content.theme,          content.shows_world,
+                             content.shows_grid,      content.shows_axes,     content.scale};
+    if (drawn_state_ == state) return false;
+    const bool all = !drawn_state_ || drawn_state_->space != state.space;
+    const bool bodies = all || drawn_state_->bodies_revision != state.bodies_revision ||
+                        drawn_state_->theme != state.theme || drawn_state_->scale != state.scale;
+    const bool lines = all || drawn_state_->lines_revision != state.lines_revision ||
+                       drawn_state_->scale != state.scale;
     if (bodies) {
       setBodies(scene_, content, team_);
       setOutlines(scene_, content);
@@ -143,7 +143,7 @@ class SceneView::Painter {
     setSurroundings(scene_, content);
     bounds_ = boundsOf(scene_.boxes, content.space.toView(content.world));
     if (!rasterizer_) upload(bodies, lines);
-    drawn_ = wanted;
+    drawn_state_ = state;
     return true;
   }
 
@@ -160,16 +160,16 @@ class SceneView::Painter {
       target.bind();
       drawByGl(viewpoint);
     }
-    if (drawn_->shows_axes) drawAxes(viewpoint);
+    if (drawn_state_->shows_axes) drawAxes(viewpoint);
   }
 
   /// The bounds of bodies and world, in view space.
   [[nodiscard]] const Aabb& bounds() const { return bounds_; }
-  [[nodiscard]] bool isSplatting() const { return rasterizer_ != nullptr; }
+  [[nodiscard]] bool usesSoftwareRenderer() const { return rasterizer_ != nullptr; }
 
  private:
-  /// Everything that changes a picture, except its size and the camera.
-  struct Drawn {
+  /// All inputs that affect a picture, except its size and the camera.
+  struct ContentState {
     std::uint64_t bodies_revision = 0;
     std::uint64_t lines_revision = 0;
     ViewSpace space;
@@ -180,9 +180,8 @@ class SceneView::Painter {
     bool shows_axes = false;
     float scale = 1;
 
-    friend bool operator==(const Drawn&, const Drawn&) = default;
+    friend bool operator==(const ContentState&, const ContentState&) = default;
   };
-  /// The scene on the GPU.
   struct Uploaded {
     PrimitiveBuffer boxes;
     PrimitiveBuffer floor;
@@ -230,27 +229,27 @@ class SceneView::Painter {
   }
 
   void drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const {
-    const LineLayer& how = scene_.lines[layer];
+    const LineLayer& style = scene_.lines[layer];
     const PrimitiveBuffer& lines = uploaded_.lines[layer];
-    if (how.opacity_behind > 0) {
+    if (style.opacity_behind > 0) {
       gl_->DepthFunc(GL_GREATER);
-      lines_.draw(lines, viewpoint, how.opacity_behind);
+      lines_.draw(lines, viewpoint, style.opacity_behind);
       gl_->DepthFunc(GL_LEQUAL);
     }
-    if (how.where_no_box_is) gl_->DepthRange(1, 1);
+    if (style.where_no_box_is) gl_->DepthRange(1, 1);
     lines_.draw(lines, viewpoint);
     gl_->DepthRange(0, 1);
   }
 
   void drawAxes(const Viewpoint& viewpoint) const {
-    const float scale = drawn_->scale;
+    const float scale = drawn_state_->scale;
     const Viewpoint corner = axesViewpoint(viewpoint, scale);
     const auto margin = static_cast<int>(kAxesMargin * scale);
     gl_->Viewport(margin, margin, corner.width, corner.height);
     gl_->Disable(GL_DEPTH_TEST);
     gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
     gl_->Enable(GL_BLEND);
-    lines_.draw(lines_.upload(axesCross(viewpoint.camera, drawn_->theme, scale)), corner);
+    lines_.draw(lines_.upload(axesCross(viewpoint.camera, drawn_state_->theme, scale)), corner);
     gl_->Disable(GL_BLEND);
     gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   }
@@ -261,7 +260,7 @@ class SceneView::Painter {
   PrimitiveRenderer boxes_;
   PrimitiveRenderer lines_;
 
-  std::optional<Drawn> drawn_;
+  std::optional<ContentState> drawn_state_;
   ScenePrimitives scene_;
   Uploaded uploaded_;  ///< empty with the software renderer
   Aabb bounds_;
@@ -270,7 +269,7 @@ class SceneView::Painter {
 SceneView::SceneView(const Gl& gl, const SceneViewOptions& options)
     : gl_(&gl),
       painter_(std::make_unique<Painter>(gl, options)),
-      samples_(samplesOf(gl, options.samples, painter_->isSplatting())) {
+      samples_(samplesOf(gl, options.samples, painter_->usesSoftwareRenderer())) {
   resize(1, 1);
 }
 
@@ -319,7 +318,7 @@ Picture SceneView::read() const {
   return framebuffer_->read();
 }
 
-bool SceneView::isSplatting() const { return painter_->isSplatting(); }
+bool SceneView::usesSoftwareRenderer() const { return painter_->usesSoftwareRenderer(); }
 
 std::array<std::array<float, 2>, 3> axisTips(const Viewpoint& viewpoint, float scale) {
   const Viewpoint corner = axesViewpoint(viewpoint, scale);

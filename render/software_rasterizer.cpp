@@ -9,7 +9,7 @@
 
 #include "broadmark/render/camera.h"
 #include "broadmark/render/colour.h"
-#include "look.h"
+#include "shading.h"
 
 namespace broadmark {
 namespace {
@@ -47,8 +47,8 @@ SplatView splatView(const Viewpoint& viewpoint) {
   view.far = camera.far;
   view.pixel = pixel_height;
   view.edge_pixels = edgePixels(viewpoint.height);
-  view.haze_begin = focus(camera) - kBoxLook.haze_before;
-  view.haze_end = focus(camera) + kBoxLook.haze_behind;
+  view.haze_begin = focus(camera) - kBoxShading.haze_before;
+  view.haze_end = focus(camera) + kBoxShading.haze_behind;
   const std::array haze = components(viewpoint.haze);
   std::copy(haze.begin(), haze.end(), view.haze);
   return view;
@@ -81,12 +81,12 @@ void SoftwareRasterizer::draw(const ScenePrimitives& scene, const Viewpoint& vie
 }
 
 void SoftwareRasterizer::setPrimitives(const ScenePrimitives& scene, int bands) {
-  const auto take_boxes = [&](BoxLayer& layer, std::span<const Primitive> boxes) {
+  const auto set_boxes = [&](BoxLayer& layer, std::span<const Primitive> boxes) {
     layer.boxes = itemsOf<SplatBox>(boxes);
     layer.lists.reset(boxes.size(), bands, team_->size());
   };
-  take_boxes(floor_, scene.floor);
-  take_boxes(bodies_, scene.boxes);
+  set_boxes(floor_, scene.floor);
+  set_boxes(bodies_, scene.boxes);
   for (std::size_t i = 0; i < strips_.size(); ++i) {
     const LineLayer& from = scene.lines[i];
     StripLayer& layer = strips_[i];
@@ -118,10 +118,10 @@ void SoftwareRasterizer::drawBand(const SplatView& view, std::uint32_t backgroun
   band.begin = number * BandLists::kRows;
   band.end = std::min(band.begin + BandLists::kRows, view.height);
   band.stride = view.width + kSplatPadding;
-  const auto room = static_cast<std::size_t>(band.stride) * BandLists::kRows;
-  worker.depths.resize(room);
-  worker.foremost.resize(room);
-  worker.colours.assign(room, background);
+  const auto size = static_cast<std::size_t>(band.stride) * BandLists::kRows;
+  worker.depths.resize(size);
+  worker.foremost.resize(size);
+  worker.colours.assign(size, background);
   band.depths = worker.depths.data();
   band.boxes = worker.foremost.data();
   band.colours = worker.colours.data();

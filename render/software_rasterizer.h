@@ -37,10 +37,10 @@ class BandLists {
   void fill(int worker, const Project& project) {
     auto& by_band = lists_[static_cast<std::size_t>(worker)];
     const auto [begin, end] = share(rectangles_.size(), static_cast<int>(lists_.size()), worker);
-    // In pieces, so that the rectangles are still in the cache when they are sorted into bands.
-    constexpr std::size_t kPiece = 1024;
-    for (std::size_t first = begin; first < end; first += kPiece) {
-      const std::size_t last = std::min(first + kPiece, end);
+    // In blocks, so that the rectangles are still in the cache when they are sorted into bands.
+    constexpr std::size_t kBlock = 1024;
+    for (std::size_t first = begin; first < end; first += kBlock) {
+      const std::size_t last = std::min(first + kBlock, end);
       project(first, last, rectangles_.data());
       for (std::size_t item = first; item < last; ++item) {
         const PixelRectangle& rectangle = rectangles_[item];

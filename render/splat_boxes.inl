@@ -31,7 +31,7 @@ inline Corners<float> cornersOf(const SplatView& view, const SplatBox& box) {
   return corners;
 }
 
-/// The corners of the boxes box(lane), which returns a reference.
+/// The corners of the boxes box(lane).
 template <class BoxOf>
 inline Corners<Floats> cornersOf(const SplatView& view, const BoxOf& box) {
   Corners<Floats> corners;
@@ -90,12 +90,12 @@ void projectBoxes(const SplatView& view, const SplatBox* boxes, std::size_t begi
     }
     // A box that intersects the near plane may cover any pixel; a nearer box covers no pixel.
     const Ints crosses = nearest < view.near;
-    const Ints is_seen = (farthest >= view.near) & (nearest <= view.far);
+    const Ints is_visible = (farthest >= view.near) & (nearest <= view.far);
     const Extent columns =
         pixelExtent(crosses ? broadcast(0) : left, crosses ? broadcast(width) : right, view.width);
     const Extent rows = pixelExtent(crosses ? broadcast(0) : bottom,
                                     crosses ? broadcast(height) : top, view.height);
-    storeRectangles(columns, rows, is_seen, count, rectangles + first);
+    storeRectangles(columns, rows, is_visible, count, rectangles + first);
   }
 }
 
@@ -161,7 +161,7 @@ void splatBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectang
 }
 
 /// x, y or z, selected by the axis of each lane.
-inline Floats chosen(Ints is_x, Ints is_y, Floats x, Floats y, Floats z) {
+inline Floats selectByAxis(Ints is_x, Ints is_y, Floats x, Floats y, Floats z) {
   return is_x ? x : (is_y ? y : z);
 }
 
@@ -181,25 +181,25 @@ inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays,
   const Ints is_y = ~is_x & (enter[1] >= enter[2]);
 
   // By axis: the relative position of the hit point between the faces, and its change per pixel.
-  Floats part[3];
+  Floats fraction[3];
   Floats change[3];
-  const Floats along = chosen(is_x, is_y, ray[0], ray[1], ray[2]);
+  const Floats along = selectByAxis(is_x, is_y, ray[0], ray[1], ray[2]);
   const auto change_along = [&](const float* step, int axis) {
     const Floats turn =
-        chosen(is_x, is_y, broadcast(step[0]), broadcast(step[1]), broadcast(step[2]));
+        selectByAxis(is_x, is_y, broadcast(step[0]), broadcast(step[1]), broadcast(step[2]));
     return magnitude(depth * (step[axis] - turn / along * ray[axis]));
   };
   for (int axis = 0; axis < 3; ++axis) {
     const Floats size = box.high[axis] - box.low[axis];
-    part[axis] = clamped((depth * ray[axis] - box.low[axis]) / size, 0, 1);
+    fraction[axis] = clamped((depth * ray[axis] - box.low[axis]) / size, 0, 1);
     change[axis] =
         larger((change_along(view.step_x, axis) + change_along(view.step_y, axis)) / size,
                broadcast(1e-6F));
   }
-  const Floats u = chosen(is_x, is_y, part[2], part[0], part[0]);
-  const Floats v = chosen(is_x, is_y, part[1], part[2], part[1]);
-  const Floats pixel_u = chosen(is_x, is_y, change[2], change[0], change[0]);
-  const Floats pixel_v = chosen(is_x, is_y, change[1], change[2], change[1]);
+  const Floats u = selectByAxis(is_x, is_y, fraction[2], fraction[0], fraction[0]);
+  const Floats v = selectByAxis(is_x, is_y, fraction[1], fraction[2], fraction[1]);
+  const Floats pixel_u = selectByAxis(is_x, is_y, change[2], change[0], change[0]);
+  const Floats pixel_v = selectByAxis(is_x, is_y, change[1], change[2], change[1]);
 
   // The rest is the same as in box.frag.
   const Floats from_edge = smaller(smaller(u, 1.0F - u) / pixel_u, smaller(v, 1.0F - v) / pixel_v);
@@ -207,13 +207,14 @@ inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays,
                                   broadcast(view.edge_pixels + 0.7F), from_edge);
   edge *= smoothstep(broadcast(2), broadcast(14), smaller(1.0F / pixel_u, 1.0F / pixel_v));
   const Ints looks_down = box.low[1] + box.high[1] > 0.0F;
-  const Floats light_y = looks_down ? broadcast(kBoxLook.underside) : broadcast(kBoxLook.light[1]);
-  const Floats light =
-      chosen(is_x, is_y, broadcast(kBoxLook.light[0]), light_y, broadcast(kBoxLook.light[2]));
-  const Floats foot = is_y ? Floats{} : kBoxLook.foot_darkness * (1.0F - v);
-  const Floats brightness = light * (1.0F - foot) * (1.0F - kBoxLook.edge_darkness * edge);
+  const Floats light_y =
+      looks_down ? broadcast(kBoxShading.underside) : broadcast(kBoxShading.light[1]);
+  const Floats light = selectByAxis(is_x, is_y, broadcast(kBoxShading.light[0]), light_y,
+                                    broadcast(kBoxShading.light[2]));
+  const Floats foot = is_y ? Floats{} : kBoxShading.foot_darkness * (1.0F - v);
+  const Floats brightness = light * (1.0F - foot) * (1.0F - kBoxShading.edge_darkness * edge);
   const Floats haze =
-      kBoxLook.haze * smoothstep(broadcast(view.haze_begin), broadcast(view.haze_end), depth);
+      kBoxShading.haze * smoothstep(broadcast(view.haze_begin), broadcast(view.haze_end), depth);
 
   const Ints rgb =
       __builtin_convertvector(gather([&](int lane) { return box_of(lane).colour; }), Ints);
@@ -234,9 +235,10 @@ void shadeBoxes(const SplatView& view, const SplatBox* boxes, const SplatBand& b
       std::uint32_t* colours = band.colours + row + x;
       const std::uint32_t* which = band.boxes + row + x;
       // Lanes without a box use the box of another lane.
-      std::uint32_t some = kNoBox;
-      for (int lane = 0; lane < kLanes; ++lane) some = which[lane] != kNoBox ? which[lane] : some;
-      if (some == kNoBox) {
+      std::uint32_t fallback = kNoBox;
+      for (int lane = 0; lane < kLanes; ++lane)
+        fallback = which[lane] != kNoBox ? which[lane] : fallback;
+      if (fallback == kNoBox) {
         store(depths, broadcast(1));
         continue;
       }
@@ -245,7 +247,7 @@ void shadeBoxes(const SplatView& view, const SplatBox* boxes, const SplatBand& b
       const Ints colour = shaded(
           view,
           [&](int lane) -> const SplatBox& {
-            return boxes[which[lane] != kNoBox ? which[lane] : some];
+            return boxes[which[lane] != kNoBox ? which[lane] : fallback];
           },
           raysFrom(view, x, y), depth);
       store(colours, is_covered ? colour : load<Ints>(colours));

@@ -1,6 +1,6 @@
 #include "splat_kernels.h"
 
-#include "look.h"
+#include "shading.h"
 
 namespace broadmark {
 namespace {

@@ -8,7 +8,7 @@ struct Ends {
 
 /// Clips lines at a limit. `height`: of the ends above the limit. Returns a mask of the lines that
 /// are partly above it.
-inline Ints cutBelow(const Floats (&height)[2], Ends& ends) {
+inline Ints clipBelow(const Floats (&height)[2], Ends& ends) {
   for (int end = 0; end < 2; ++end) {
     const int other = 1 - end;
     const Floats part = height[end] / (height[end] - height[other]);
@@ -31,23 +31,23 @@ inline Ints viewedEnds(const SplatView& view, const Floats (&points)[3][2], Ends
     }
   }
   const Floats height[2] = {ends.at[2][0] - view.near, ends.at[2][1] - view.near};
-  return cutBelow(height, ends);
+  return clipBelow(height, ends);
 }
 
 /// Clips lines at `margin` pixels beside the picture, to keep the numbers small. Returns a mask of
 /// the lines that are partly inside.
-inline Ints cutBeside(const SplatView& view, Floats margin, Ends& ends) {
-  Ints is_left = Ints{} == 0;
+inline Ints clipToPicture(const SplatView& view, Floats margin, Ends& ends) {
+  Ints is_inside = Ints{} == 0;
   const int sizes[2] = {view.width, view.height};
   for (int axis = 0; axis < 2; ++axis) {
     const Floats(&at)[2] = ends.at[axis];
     const Floats above[2] = {at[0] + margin, at[1] + margin};
-    is_left &= cutBelow(above, ends);
+    is_inside &= clipBelow(above, ends);
     const Floats limit = margin + static_cast<float>(sizes[axis]);
     const Floats below[2] = {limit - at[0], limit - at[1]};
-    is_left &= cutBelow(below, ends);
+    is_inside &= clipBelow(below, ends);
   }
-  return is_left;
+  return is_inside;
 }
 
 void projectLines(const SplatView& view, const SplatLine* lines, std::size_t begin, std::size_t end,
@@ -61,10 +61,10 @@ void projectLines(const SplatView& view, const SplatLine* lines, std::size_t beg
     for (int axis = 0; axis < 3; ++axis) {
       points[axis][0] = gather([&](int lane) { return line(lane).from[axis]; });
       points[axis][1] = gather([&](int lane) { return line(lane).to[axis]; });
-      for (Floats& at : points[axis]) at = (at - view.eye[axis]) * (1.0F - kLineLook.lift);
+      for (Floats& at : points[axis]) at = (at - view.eye[axis]) * (1.0F - kLineShading.lift);
     }
     Ends ends;
-    Ints is_seen = viewedEnds(view, points, ends);
+    Ints is_visible = viewedEnds(view, points, ends);
     for (int side = 0; side < 2; ++side) {
       const Floats depth = ends.at[2][side];
       ends.at[0][side] /= depth;
@@ -73,14 +73,14 @@ void projectLines(const SplatView& view, const SplatLine* lines, std::size_t beg
     }
     const Floats half_width = 0.5F * gather([&](int lane) { return line(lane).width; });
     const Floats reach = half_width + 0.5F;  // plus half a pixel for the smooth border
-    is_seen &= cutBeside(view, reach + 1.0F, ends);
+    is_visible &= clipToPicture(view, reach + 1.0F, ends);
 
     const auto& [x, y, z] = ends.at;
     const Floats difference[2] = {x[1] - x[0], y[1] - y[0]};
     const Floats square = difference[0] * difference[0] + difference[1] * difference[1];
     Floats length;
     for (int lane = 0; lane < kLanes; ++lane) length[lane] = __builtin_sqrtf(square[lane]);
-    is_seen &= length > 0.0F;
+    is_visible &= length > 0.0F;
     const Floats direction[2] = {difference[0] / length, difference[1] / length};
     const Floats depth_step = (z[1] - z[0]) / length;
     for (std::size_t lane = 0; lane < count; ++lane) {
@@ -93,8 +93,8 @@ void projectLines(const SplatView& view, const SplatLine* lines, std::size_t beg
     }
     storeRectangles(
         pixelExtent(smaller(x[0], x[1]) - reach, larger(x[0], x[1]) + reach, view.width),
-        pixelExtent(smaller(y[0], y[1]) - reach, larger(y[0], y[1]) + reach, view.height), is_seen,
-        count, rectangles + first);
+        pixelExtent(smaller(y[0], y[1]) - reach, larger(y[0], y[1]) + reach, view.height),
+        is_visible, count, rectangles + first);
   }
 }
 
@@ -104,7 +104,7 @@ struct Span {
   float right;
 
   /// Clips the span to a distance of `reach` from `middle`.
-  void keepAround(float middle, float reach) {
+  void clipTo(float middle, float reach) {
     left = larger(left, middle - reach);
     right = smaller(right, middle + reach);
   }
@@ -120,11 +120,11 @@ inline Span spanOf(const SplatStrip& strip, const PixelRectangle& rectangle, flo
   const float slack = 0.05F;
   if (y > kSlope || y < -kSlope) {
     const float across = (strip.half_width + 0.5F) / (y > 0 ? y : -y);
-    span.keepAround(origin + from_start * x / y, across + slack);
+    span.clipTo(origin + from_start * x / y, across + slack);
   }
   if (x > kSlope || x < -kSlope) {
     const float half = 0.5F * strip.length;
-    span.keepAround(origin + (half - from_start * y) / x, half / (x > 0 ? x : -x) + slack);
+    span.clipTo(origin + (half - from_start * y) / x, half / (x > 0 ? x : -x) + slack);
   }
   return span;
 }

@@ -80,11 +80,11 @@ inline Extent pixelExtent(Floats low, Floats high, int count) {
 }
 
 /// Stores the rectangles of two extents for the first `count` lanes.
-inline void storeRectangles(const Extent& columns, const Extent& rows, Ints is_seen,
+inline void storeRectangles(const Extent& columns, const Extent& rows, Ints is_visible,
                             std::size_t count, PixelRectangle* rectangles) {
   for (std::size_t lane = 0; lane < count; ++lane) {
     PixelRectangle rectangle;
-    if (is_seen[lane] != 0 && rows.first[lane] <= rows.last[lane]) {
+    if (is_visible[lane] != 0 && rows.first[lane] <= rows.last[lane]) {
       rectangle = {static_cast<std::int16_t>(columns.first[lane]),
                    static_cast<std::int16_t>(columns.last[lane]),
                    static_cast<std::int16_t>(rows.first[lane]),

@@ -121,7 +121,7 @@ void Window::poll(double seconds) {
 
 void Window::swap() { glfwSwapBuffers(window_); }
 bool Window::closing() const { return glfwWindowShouldClose(window_) != 0; }
-void Window::stayOpen() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+void Window::cancelClosing() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
 void Window::setTitle(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 void Window::setCursor(int imgui_cursor) {
@@ -153,7 +153,7 @@ float Window::scale() const {
   return scale > 0 ? scale : 1;
 }
 
-std::vector<std::filesystem::path> Window::takeDrops() { return std::exchange(drops_, {}); }
+std::vector<std::filesystem::path> Window::consumeDrops() { return std::exchange(drops_, {}); }
 
 std::string Window::clipboard() const {
   const char* text = glfwGetClipboardString(window_);

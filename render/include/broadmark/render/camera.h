@@ -16,7 +16,7 @@ struct ViewSpace {
   std::array<double, 3> origin{};  ///< the world point that becomes 0
   double side = 1;                 ///< the world length that becomes 1; positive
 
-  /// Clamped to ±kLimit: finite for every finite point.
+  /// Transforms to view space, clamped to ±kLimit: finite for every finite point.
   [[nodiscard]] std::array<float, 3> toView(const std::array<float, 4>& world_point) const;
   [[nodiscard]] Aabb toView(const Aabb& world_box) const;
 
@@ -25,7 +25,7 @@ struct ViewSpace {
   friend bool operator==(const ViewSpace&, const ViewSpace&) = default;
 };
 
-/// The view space in which `box` is centred and its longest edge has length 1. If `box` is a point,
+/// The view space that centres `box` and scales its longest edge to 1. If `box` is a point,
 /// lengths are not scaled.
 ViewSpace viewSpaceOf(const Aabb& box);
 
@@ -61,14 +61,14 @@ CameraAxes axesOf(const Camera& camera);
 /// The length of a pixel at distance 1 from the eye, in a picture of this height.
 float pixelSize(const Camera& camera, int height);
 
-/// From view space to clip space, by columns as in OpenGL.
+/// The matrix from view space to clip space, by columns as in OpenGL.
 std::array<float, 16> viewProjection(const Camera& camera);
 
 /// Distance from the eye to the target.
 float focus(const Camera& camera);
 
-/// The projection of a point of view space: x and y in [-1, 1] from left to right and bottom to
-/// top, depth in [-1, 1]. Empty for a point behind the eye.
+/// Projects a point of view space: x and y in [-1, 1] from left to right and bottom to
+/// top, depth in [-1, 1]. nullopt for a point behind the eye.
 std::optional<std::array<float, 3>> project(const Camera& camera,
                                             const std::array<float, 3>& point);
 

@@ -21,7 +21,7 @@ constexpr std::array<float, 3> components(Rgb colour) {
           static_cast<float>(all[2]) / 255};
 }
 
-/// From a (part 0) to b (part 1), channel by channel.
+/// Interpolates each channel from a (part 0) to b (part 1).
 constexpr Rgb mixed(Rgb a, Rgb b, float part) {
   const std::array<std::uint32_t, 3> from = channels(a);
   const std::array<std::uint32_t, 3> to = channels(b);
@@ -29,7 +29,7 @@ constexpr Rgb mixed(Rgb a, Rgb b, float part) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto start = static_cast<float>(from[i]);
     const float value = start + part * (static_cast<float>(to[i]) - start);
-    // Not std::lround(): that is no constant expression.
+    // std::lround() is not constexpr.
     colour = colour << 8 | static_cast<Rgb>(value + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
   }
   return colour;

@@ -14,7 +14,7 @@
 
 namespace broadmark {
 
-/// The input of a mode, not owned. Pairs may name bodies that do not exist.
+/// The input of a mode, not owned. Pairs may name nonexistent bodies.
 struct ColouringInput {
   std::span<const Aabb> boxes;              ///< empty for absent bodies
   std::span<const Aabb> previous;           ///< of the previous frame, or empty

@@ -15,7 +15,7 @@ class FrameValues {
  public:
   static constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-  /// The minimum and maximum of some frames; both NaN if no number is known.
+  /// The minimum and maximum of some frames; NaN if no number is known.
   struct Range {
     float low = kUnknown;
     float high = kUnknown;
@@ -23,7 +23,7 @@ class FrameValues {
     [[nodiscard]] bool known() const { return !std::isnan(low); }
   };
 
-  /// NaN makes the number unknown.
+  /// Sets the number of a frame; NaN: unknown.
   void set(std::uint32_t frame, float value);
   /// The number of a frame; NaN if unknown.
   [[nodiscard]] float at(std::uint32_t frame) const {

@@ -15,13 +15,13 @@ Picture readPicture(const Gl& gl, int width, int height);
 /// Colour and depth of a picture. Requires its context to be current during its lifetime.
 class Framebuffer {
  public:
-  static constexpr int kSamples = 4;  ///< default number per pixel
+  static constexpr int kSamples = 4;  ///< default per pixel
 
   /// `samples`: per pixel, reduced to the driver's maximum. Throws RenderError if the driver does
   /// not support this size.
   Framebuffer(const Gl& gl, int width, int height, int samples = kSamples);
 
-  /// Makes it the target of drawing and sets the viewport.
+  /// Binds this as the draw target and sets the viewport.
   void bind() const;
   /// Replaces the picture: RGBA8 in memory order, rows from bottom to top. Only with one sample per
   /// pixel. Throws RenderError.
@@ -42,10 +42,10 @@ class Framebuffer {
     GlObject depth;
     GlObject framebuffer;
   };
-  // Do not throw: framebuffer 0 if the driver cannot create the target.
+  // These functions do not throw: the framebuffer is 0 if the driver cannot create the target.
   [[nodiscard]] Target makeTextureTarget() const;
   [[nodiscard]] Target makeMultisampleTarget(int samples) const;
-  [[nodiscard]] Target whereComplete(Target target) const;
+  [[nodiscard]] Target ifComplete(Target target) const;
 
   const Gl* gl_;
   int width_;

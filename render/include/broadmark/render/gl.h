@@ -2,7 +2,7 @@
 // GLFW) fills it, because no loader library works with all three.
 #pragma once
 
-#define GL_GLEXT_PROTOTYPES  // for the types of the functions; none is linked
+#define GL_GLEXT_PROTOTYPES  // only for the types of the functions
 #include <GL/glcorearb.h>
 
 #include <functional>

@@ -1,8 +1,8 @@
 // Mouse and keyboard events in order, from a window or from a script.
 //
-// Dear ImGui 1.86 reads the state of keys and buttons once per picture, and would lose a press and
-// a release between two pictures. Therefore events are queued, and each picture applies only as
-// many as it can distinguish.
+// Dear ImGui 1.86 reads the state of keys and buttons once per frame, and would lose a press and
+// a release between two frames. Therefore events are queued, and each frame applies only as
+// many events as Dear ImGui can distinguish.
 #pragma once
 
 #include <deque>
@@ -35,8 +35,8 @@ class InputQueue {
   void push(const InputEvent& event) { events_.push_back(event); }
   [[nodiscard]] bool empty() const { return events_.empty(); }
 
-  /// Applies events to the next picture, up to an event that the picture could not distinguish from
-  /// the applied ones: a second change of a key or button, a move or turn of the wheel after a
+  /// Applies events to the next frame, up to an event that Dear ImGui could not distinguish from
+  /// the applied events: a second change of a key or button, a move or turn of the wheel after a
   /// button, a key after a character, or a modifier after another key.
   void applyTo(ImGuiIO& io);
 

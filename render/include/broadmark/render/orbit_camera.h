@@ -19,7 +19,7 @@ struct OrbitCamera {
   float field_of_view = 0.70F;  ///< vertical
   float cut = kUncut;           ///< near plane as a fraction of the distance; below 1
 
-  /// A little less than straight down, where the yaw is undefined.
+  /// Slightly less than straight down, where the yaw is undefined.
   static constexpr float kSteepest = 1.562F;
   static constexpr float kUncut = 0.02F;
   static constexpr float kNearest = 1e-5F;
@@ -37,13 +37,13 @@ inline constexpr NameTable kDirections{{NamedValue{Direction::figure, "figure"},
                                         {Direction::right, "right"},
                                         {Direction::top, "top"},
                                         {Direction::bottom, "bottom"}}};
-OrbitCamera lookedFrom(OrbitCamera camera, Direction direction);
+OrbitCamera viewedFrom(OrbitCamera camera, Direction direction);
 
 /// Orbits the pivot by angles in radians.
 OrbitCamera orbited(OrbitCamera camera, float yaw, float pitch);
 
-/// Moves the picture to the right and up, by fractions of its height: a dragged point at the
-/// pivot's depth stays under the pointer.
+/// Pans the picture to the right and up, by fractions of its height: a dragged point at the
+/// pivot's depth remains under the pointer.
 OrbitCamera panned(OrbitCamera camera, float right, float up);
 
 /// Zooms towards `point` (in view space; `factor` < 1) or away from it (> 1) without moving it on
@@ -53,15 +53,15 @@ OrbitCamera zoomed(OrbitCamera camera, float factor, const std::array<float, 3>&
 /// Moves eye and pivot by multiples of the distance, so that the speed scales with the picture.
 OrbitCamera flown(OrbitCamera camera, float forward, float right, float up);
 
-/// Focuses the middle of a box (in view space) in the same direction, at a distance that shows the
+/// Focuses the centre of a box (in view space) in the same direction, at a distance that shows the
 /// whole box, or a neighbourhood of a very small box.
 OrbitCamera focusedOn(OrbitCamera camera, const Aabb& box, double aspect);
 
 /// Clips everything nearer to the eye than a box (in view space).
 OrbitCamera cutAway(OrbitCamera camera, const Aabb& box);
 
-/// A transition between two views with t from 0 to 1, slow at both ends. The new pivot moves on a
-/// straight line on the screen.
+/// Interpolates between two views, with t from 0 to 1, slowly at both ends. The new pivot moves on
+/// a straight line on the screen.
 OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t);
 
 /// The point at the pivot's depth that appears at (x, y), each from -1 to 1, y upwards.

@@ -42,7 +42,7 @@ class OffscreenContext {
 /// Throws RenderError with the failed sources and the reasons.
 std::unique_ptr<OffscreenContext> makeOffscreenContext(GlSource);
 
-inline constexpr int kLargestPicture = 16384;  ///< pixels per side
+inline constexpr int kMaxPictureSide = 16384;  ///< pixels per side
 
 /// Draws a frame with figureCamera(): all boxes, with a separate colour for bodies in `overlaps`,
 /// the world and its floor. Throws RenderError.

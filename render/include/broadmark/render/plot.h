@@ -22,7 +22,7 @@ struct PlotCurve {
   bool hidden = false;
 };
 
-/// A row of marks above the curves, at every known frame in any of `frames`, even if several are in
+/// A row of marks above the curves, at every known frame in any of `frames`, even if several share
 /// a pixel.
 struct PlotMarks {
   std::string label;  ///< of a marked frame: "wrong"
@@ -37,7 +37,7 @@ struct PlotOptions {
   /// The visible frames.
   double first = 0;
   double last = 1;
-  std::uint32_t playhead = 0;  ///< the present frame; an arrow points to it if invisible
+  std::uint32_t playhead = 0;  ///< the current frame; an arrow points to it if invisible
   double limit = 0;            ///< a horizontal line with its value, or 0
   Rgb limit_colour = 0;
   /// The shaded frames, inclusive.

@@ -29,7 +29,7 @@ struct PointPlotOptions {
   const char* across = "";   ///< name of the horizontal axis: "bodies"
 };
 
-/// The indices of a point, and its position in the window.
+/// A drawn point: its indices, and its position in the window.
 struct DrawnPoint {
   std::size_t curve = 0;
   std::size_t point = 0;

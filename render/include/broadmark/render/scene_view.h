@@ -41,7 +41,7 @@ struct SceneWireBox {
   OcclusionStyle behind = OcclusionStyle::hidden;
 };
 
-/// The content of the view. The spans must be valid during draw(), which reads them only if their
+/// The content of the view. The spans must be valid during draw(), which reads a span only if its
 /// revision or the space has changed.
 struct SceneViewContent {
   ViewSpace space;
@@ -79,7 +79,8 @@ struct SceneViewOptions {
 /// Whether this context's OpenGL runs on the CPU.
 bool isSoftwareRenderer(const Gl& gl);
 
-/// Requires its context to be current during its lifetime. All members may throw RenderError.
+/// Draws a scene. Requires its context to be current during its lifetime. All members may throw
+/// RenderError.
 class SceneView {
  public:
   explicit SceneView(const Gl& gl, const SceneViewOptions& options = {});
@@ -103,7 +104,7 @@ class SceneView {
   /// The viewpoint of the last draw(), for picking.
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
   /// Whether the software renderer draws the scene.
-  [[nodiscard]] bool isSplatting() const;
+  [[nodiscard]] bool usesSoftwareRenderer() const;
 
  private:
   class Painter;

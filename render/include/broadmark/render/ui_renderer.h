@@ -10,15 +10,15 @@ struct ImFontAtlas;
 
 namespace broadmark {
 
-/// Requires its context to be current from construction to destruction. Textures are identified by
+/// Requires its context to be current during its lifetime. Textures are identified by
 /// their GL names: ImGui::Image(uiTexture(id), …).
 class UiRenderer {
  public:
   explicit UiRenderer(const Gl& gl);
 
-  /// Creates a texture of the atlas. Call it again after changes of the fonts.
+  /// Creates a texture of the atlas. Must be called again after changes of the fonts.
   void uploadFonts(ImFontAtlas& atlas);
-  /// Draws over the whole current framebuffer.
+  /// Draws into the current framebuffer.
   void draw(const ImDrawData& data);
 
  private:

@@ -29,10 +29,9 @@ class Window {
   void poll(double seconds);
   void swap();
   [[nodiscard]] bool closing() const;
-  /// Cancels closing.
-  void stayOpen();
+  void cancelClosing();
   void setTitle(const std::string& title);
-  /// Shows the pointer for an ImGuiMouseCursor.
+  /// Sets the cursor shape for an ImGuiMouseCursor.
   void setCursor(int imgui_cursor);
 
   [[nodiscard]] int width() const;   ///< pixels
@@ -41,8 +40,8 @@ class Window {
   [[nodiscard]] float scale() const;
 
   InputQueue& input() { return input_; }
-  /// The files dropped onto the window since the last call.
-  std::vector<std::filesystem::path> takeDrops();
+  /// Returns the files dropped onto the window since the last call.
+  std::vector<std::filesystem::path> consumeDrops();
 
   [[nodiscard]] std::string clipboard() const;
   void setClipboard(const std::string& text);
