@@ -12,7 +12,7 @@
 namespace broadmark {
 namespace {
 
-constexpr float kOneRowWidth = 560;  // units: narrower, the playback has two rows
+constexpr float kOneRowWidth = 560;  // units: below, the playback has two rows
 constexpr double kSpeeds[] = {1, 5, 10, 15, 24, 30, 60, 120, 1000};
 
 }  // namespace
@@ -39,7 +39,7 @@ void Inspector::drawButtons() {
   Playback& playback = session_.playback;
   if (ui_.button("|<", "First frame (Home)")) playback.goTo(0);
   ImGui::SameLine();
-  if (ui_.button("<", "One frame back (Left)")) playback.step(-1);
+  if (ui_.button("<", "Previous frame (Left)")) playback.step(-1);
   ImGui::SameLine();
   bool playing = playback.playing();
   if (ui_.toggle(playing ? "Pause###Play" : "Play###Play", playing, "Play or pause (Space)",
@@ -47,9 +47,9 @@ void Inspector::drawButtons() {
     session_.play(playing);
   }
   ImGui::SameLine();
-  if (ui_.button(">", "One frame on (Right)")) playback.step(1);
+  if (ui_.button(">", "Next frame (Right)")) playback.step(1);
   ImGui::SameLine();
-  ui_.toggle("Loop", playback.loop, "Begin again after the last frame");
+  ui_.toggle("Loop", playback.loop, "Restart after the last frame");
 }
 
 void Inspector::drawSpeed() {
@@ -60,18 +60,18 @@ void Inspector::drawSpeed() {
     speeds.push_back(kSpeeds[i] >= 1000 ? "fastest" : fmt::format("{:g} frames/s", kSpeeds[i]));
     if (kSpeeds[i] <= playback.frames_per_second) chosen = i;
   }
-  if (ui_.combo("##speed", chosen, speeds, "Frames shown per second, if all keep pace",
+  if (ui_.combo("##speed", chosen, speeds, "Maximum number of frames per second",
                 std::min(108 * ui_.scale, ImGui::GetContentRegionAvail().x))) {
     playback.frames_per_second = kSpeeds[chosen];
   }
-  // The place is kept while nothing is played, so that nothing beside it moves.
+  // Reserve the space while paused, so that the layout does not change.
   ImGui::SameLine();
   const float left = ImGui::GetCursorPosX();
   ImGui::AlignTextToFramePadding();
-  const auto achieved = playback.achieved();
+  const auto achieved = playback.achievedRate();
   ui_.faint(achieved ? fmt::format("{:.0f}/s", *achieved) : "");
   ui_.note("achieved");
-  ui_.tooltip("Frames that were shown in the last second");
+  ui_.tooltip("Frames shown in the last second");
   ImGui::SameLine(left + 40 * ui_.scale);
   ImGui::Dummy({0, 0});
 }
@@ -82,7 +82,7 @@ void Inspector::drawPosition(const RunProgress& progress) {
     return fmt::format("{} / {}", frame, last);
   };
   const std::uint32_t last = playback.lastFrame();
-  // As wide as the widest number to come.
+  // Reserve the width of the largest frame number.
   const float width =
       ImGui::CalcTextSize(text(last, last).c_str()).x + ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - width, 20.0F));
@@ -92,13 +92,14 @@ void Inspector::drawPosition(const RunProgress& progress) {
     playback.goTo(frame);
   }
   ImGui::EndDisabled();
-  // What has been simulated so far.
+  // Mark the frames simulated so far.
   if (progress.live && progress.scene.frames > 0) {
     const ImVec2 min = ImGui::GetItemRectMin();
     const ImVec2 max = ImGui::GetItemRectMax();
-    const float known = min.x + (max.x - min.x) * static_cast<float>(progress.known_frames) /
-                                    static_cast<float>(progress.scene.frames);
-    ImGui::GetWindowDrawList()->AddRectFilled({min.x, max.y - 2 * ui_.scale}, {known, max.y},
+    const float available = min.x + (max.x - min.x) *
+                                        static_cast<float>(progress.available_frames) /
+                                        static_cast<float>(progress.scene.frames);
+    ImGui::GetWindowDrawList()->AddRectFilled({min.x, max.y - 2 * ui_.scale}, {available, max.y},
                                               colour(ui_.theme.accent, 0.7F));
   }
   ImGui::SameLine();
@@ -113,22 +114,22 @@ void Inspector::drawStatus(const RunProgress& progress) {
     ui_.note("source");
     ImGui::SameLine(0, 14 * ui_.scale);
     const std::string bodies = counted(progress.scene.objects, "body", "bodies");
-    const bool partly = !progress.scene.all_present && progress.snapshot;
-    ui_.faint(
-        fmt::format("{} {}, {}", progress.scene.name, progress.scene.object_type,
-                    partly ? fmt::format("{} of {}", progress.snapshot->present, bodies) : bodies));
+    const bool partial = !progress.scene.all_present && progress.snapshot;
+    ui_.faint(fmt::format(
+        "{} {}, {}", progress.scene.name, progress.scene.object_type,
+        partial ? fmt::format("{} of {}", progress.snapshot->present, bodies) : bodies));
     if (progress.snapshot) {
       ImGui::SameLine(0, 14 * ui_.scale);
       ui_.faint(views_.first().answer().answer);
     }
   } else {
-    ui_.faint("Nothing is open: simulate a scene, or open or drop a recording");
+    ui_.faint("Nothing is open: simulate a scene, or open or drop a file");
   }
-  if (!progress.doing.empty()) {
+  if (!progress.activity.empty()) {
     ImGui::SameLine(0, 14 * ui_.scale);
     ImGui::ProgressBar(progress.fraction, {90 * ui_.scale, ImGui::GetTextLineHeight()}, "");
     ImGui::SameLine();
-    ui_.faint(progress.doing);
+    ui_.faint(progress.activity);
   }
   const Message& message = session_.notices.status;
   if (message.text.empty()) return;

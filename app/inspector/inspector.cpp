@@ -1,4 +1,4 @@
-// The window's contents: where everything stands, panels in their places, errors.
+// The window's contents: layout, panels and dialogs.
 
 #include "inspector/inspector.h"
 
@@ -19,19 +19,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kFontSize = 15;       // units
-constexpr float kLargeFontSize = 20;  // units
-constexpr float kNarrowest = 110;     // units: of a place that is shown
+constexpr float kFontSize = 15;        // units
+constexpr float kLargeFontSize = 20;   // units
+constexpr float kMinAreaExtent = 110;  // units: of a visible dock area
 
 }  // namespace
 
 Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences,
-                     float scale, ExecutorFactory make_host)
+                     float scale, ExecutorFactory make_executor)
     : preferences_(std::move(preferences)),
       context_(ImGui::CreateContext()),
       renderer_(gl),
       gl_(&gl),
-      session_(std::move(algorithms), std::move(make_host)),
+      session_(std::move(algorithms), std::move(make_executor)),
       views_(gl),
       panels_(makePanels({ui_, session_, views_.first(), files_})),
       screen_scale_(scale) {
@@ -41,24 +41,24 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.MousePos = {-FLT_MAX, -FLT_MAX};
   setKeyMap(io);
-  restyle();
-  for (const auto& [place, panel] : preferences_.tabs)
-    session_.notices.wanted_panels.push_back(panel);
-  session_.notices.on_file = [this](const fs::path& file) { preferences_.remember(file); };
+  applyStyle();
+  for (const auto& [area, panel] : preferences_.tabs)
+    session_.notices.panels_to_raise.push_back(panel);
+  session_.notices.on_file_used = [this](const fs::path& file) { preferences_.remember(file); };
   ui_.on_correction = [this](const std::string& text) {
-    session_.notices.say(text, Severity::warning);
+    session_.notices.setStatus(text, Severity::warning);
   };
   makeShortcuts();
 }
 
 Inspector::~Inspector() { ImGui::DestroyContext(context_); }
 
-void Inspector::restyle() {
+void Inspector::applyStyle() {
   const float scale =
       preferences_.scale > 0 ? static_cast<float>(preferences_.scale) : screen_scale_;
-  const bool same_letters = scale == ui_.scale && ui_.large != nullptr;
+  const bool same_fonts = scale == ui_.scale && ui_.large != nullptr;
   applyTheme(ui_, preferences_.dark, scale);
-  if (!same_letters) loadFonts();
+  if (!same_fonts) loadFonts();
 }
 
 void Inspector::loadFonts() {
@@ -75,9 +75,9 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
   input.applyTo(io);
-  if (std::exchange(restyle_, false)) restyle();
+  if (std::exchange(style_changed_, false)) applyStyle();
   if (ui_.glyphs.dirty()) loadFonts();
-  session_.runs.gate().beginDrawing();
+  session_.runs.drawGate().beginDrawing();
   ui_.beforePicture();
   prepareNavigation();
   ImGui::NewFrame();
@@ -94,8 +94,8 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   gl_->ClearColor(back.x, back.y, back.z, 1);
   gl_->Clear(GL_COLOR_BUFFER_BIT);
   renderer_.draw(*ImGui::GetDrawData());
-  session_.runs.gate().endDrawing();
-  session_.commit();
+  session_.runs.drawGate().endDrawing();
+  session_.postRequest();
 }
 
 bool Inspector::needsRedraw() {
@@ -103,12 +103,12 @@ bool Inspector::needsRedraw() {
 }
 
 std::optional<fs::path> Inspector::takeScreenshotRequest() {
-  if (!std::exchange(screenshot_asked_, false)) return {};
+  if (!std::exchange(screenshot_requested_, false)) return {};
   fs::path path;
   do {
     path = fmt::format("broadmark-{:03}.png", ++screenshots_);
   } while (fs::exists(path));
-  session_.notices.say(fmt::format("screenshot: {}", fs::absolute(path).string()));
+  session_.notices.setStatus(fmt::format("screenshot: {}", fs::absolute(path).string()));
   return path;
 }
 
@@ -126,7 +126,7 @@ void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& e
   if (ImGui::IsItemActive()) {
     const ImVec2 moved = ImGui::GetIO().MouseDelta;
     extent += static_cast<double>(sign * (vertical ? moved.x : moved.y) / ui_.scale);
-    extent = std::max(extent, static_cast<double>(kNarrowest));
+    extent = std::max(extent, static_cast<double>(kMinAreaExtent));
   }
   ImGui::End();
   ImGui::PopStyleVar();
@@ -142,10 +142,10 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   const float line = ImGui::GetFrameHeight() + 2 * unit;
   const float status_top = std::max(h - line, top);
   const float gap = kSplitterSize * unit;
-  // On a small window the places make room for the view, and then give way altogether.
-  const auto extent = [&](double wanted, float most) {
-    const float given = std::min(static_cast<float>(wanted) * unit, most);
-    return given < kNarrowest * unit ? 0.0F : given;
+  // In a small window the dock areas shrink, then vanish, to make room for the view.
+  const auto extent = [&](double preferred, float max) {
+    const float actual = std::min(static_cast<float>(preferred) * unit, max);
+    return actual < kMinAreaExtent * unit ? 0.0F : actual;
   };
   const float left = extent(preferences_.left, 0.30F * w);
   const float right = extent(preferences_.right, 0.30F * w);
@@ -174,14 +174,14 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   views_.draw(ui_, session_, progress, {view_left, top}, {middle, view_bottom - top});
   beginAt("Playback", {view_left, view_bottom}, {middle, transport_height},
           ImGuiWindowFlags_NoScrollbar);
-  takeFocus(kDockAreas.entries.size());
+  focusIfRequested(kDockAreas.entries.size());
   drawTransport(progress);
   ImGui::End();
   beginAt("Status", {0, status_top}, {w, line}, ImGuiWindowFlags_NoScrollbar);
   drawStatus(progress);
   ImGui::End();
 
-  session_.notices.wanted_panels.clear();
+  session_.notices.panels_to_raise.clear();
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
   drawQuitDialog();
@@ -194,14 +194,14 @@ void Inspector::drawDockArea(DockArea area, const RunProgress& progress, ImVec2 
                              ImVec2 size) {
   const std::string name(kDockAreas.nameOf(area));
   beginAt(name.c_str(), position, size);
-  takeFocus(static_cast<std::size_t>(area));
+  focusIfRequested(static_cast<std::size_t>(area));
   if (ImGui::BeginTabBar(name.c_str(), ImGuiTabBarFlags_FittingPolicyScroll)) {
     for (const auto& panel : panels_) {
       if (panel.area != area) continue;
-      const bool wanted = std::ranges::find(session_.notices.wanted_panels, panel.name) !=
-                          session_.notices.wanted_panels.end();
+      const bool raised = std::ranges::find(session_.notices.panels_to_raise, panel.name) !=
+                          session_.notices.panels_to_raise.end();
       const bool open =
-          ImGui::BeginTabItem(panel.name, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
+          ImGui::BeginTabItem(panel.name, nullptr, raised ? ImGuiTabItemFlags_SetSelected : 0);
       ui_.note(panel.name);
       ui_.tooltip(panel.tooltip);
       if (!open) continue;
@@ -223,33 +223,33 @@ void Inspector::drawErrors() {
   if (!ui_.beginDialog("Error", {520, 0})) return;
   if (!session_.notices.errors.empty()) ui_.paragraph(session_.notices.errors.front());
   ImGui::Spacing();
-  // The key that led to the error does not acknowledge it.
-  const bool seen = !ImGui::IsWindowAppearing() && (ui_.escaped() || Ui::entered());
-  if (ui_.button("OK", nullptr, 80 * ui_.scale) || seen) {
+  // The key press that caused the error must not acknowledge it.
+  const bool acknowledged = !ImGui::IsWindowAppearing() && (ui_.escaped() || Ui::entered());
+  if (ui_.button("OK", nullptr, 80 * ui_.scale) || acknowledged) {
     if (!session_.notices.errors.empty()) session_.notices.errors.pop_front();
     if (session_.notices.errors.empty()) ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Inspector::leave() {
-  quit_asked_ = false;
-  session_.document.leave([this] { closing_ = true; });
+void Inspector::closeDocument() {
+  quit_requested_ = false;
+  session_.document.closeThen([this] { closing_ = true; });
 }
 
 void Inspector::drawQuitDialog() {
-  if (!quit_asked_ || !session_.notices.errors.empty()) return;
-  if (!session_.jobs.running()) return leave();  // it has ended meanwhile
+  if (!quit_requested_ || !session_.notices.errors.empty()) return;
+  if (!session_.jobs.running()) return closeDocument();  // finished meanwhile
   const auto scope = ui_.scope("Quit");
   std::string text;
   for (const Job* const job : session_.jobs.all()) {
-    if (job->running()) text += job->status().doing + '\n';
+    if (job->running()) text += job->status().activity + '\n';
   }
   const auto answer = ui_.ask("Work in progress", text + "Finished work is kept.",
                               {{"Quit anyway", "Discard unfinished work"}});
   if (!answer) return;
-  quit_asked_ = false;
-  if (*answer == 0) leave();
+  quit_requested_ = false;
+  if (*answer == 0) closeDocument();
 }
 
 }  // namespace broadmark

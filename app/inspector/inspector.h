@@ -1,5 +1,5 @@
-// The inspector: the session, and the window's contents around it. Draws into whatever is bound: a
-// window, or an off-screen picture.
+// The inspector: the session, and the window's contents. Draws into the bound framebuffer, of a
+// window or off-screen. A "picture" is one drawn image; a "frame" always belongs to the scene.
 #pragma once
 
 #include <algorithm>
@@ -23,38 +23,38 @@ struct ImGuiContext;
 
 namespace broadmark {
 
-/// A key, or several, that does something.
+/// A keyboard shortcut.
 struct Shortcut {
   Key key = 0;
   bool ctrl = false;
   bool shift = false;
   std::string doc = {};
-  std::function<void()> act;
+  std::function<void()> action;
 
-  /// As people read it: "Ctrl+O".
+  /// The key combination as text: "Ctrl+O".
   [[nodiscard]] std::string keys() const;
 };
 
-/// What some shortcuts do, for the menus that say so, too.
+/// Descriptions of the shortcuts that also appear in menus.
 inline constexpr const char* kOpenFile = "open a file";
 inline constexpr const char* kSave =
-    "save the authored scene, or the frames known so far as a recording";
+    "save the authored scene, or the available frames as a recording";
 inline constexpr const char* kQuit = "quit";
-inline constexpr const char* kTakePicture = "save a picture of the window";
-inline constexpr const char* kShowKeys = "this page";
+inline constexpr const char* kSaveScreenshot = "save a screenshot";
+inline constexpr const char* kShowHelp = "show this page";
 
 class Inspector {
  public:
-  /// `scale`: pixels per unit. Needs its context current from construction to destruction; at most
-  /// one lives at a time.
+  /// `scale`: pixels per unit. The GL context must be current from construction to destruction; at
+  /// most one instance may exist.
   Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale,
-            ExecutorFactory make_host = makeLocalHost);
+            ExecutorFactory make_executor = makeInProcessExecutor);
   ~Inspector();
   Inspector(const Inspector&) = delete;
   Inspector& operator=(const Inspector&) = delete;
 
-  /// Takes in what has happened and draws one picture of `width` x `height` pixels. `bind` makes
-  /// the target current. `seconds` since the last picture.
+  /// Processes the input and draws a picture of `width` x `height` pixels. `bind` binds the target
+  /// framebuffer. `seconds`: time since the last picture.
   void draw(InputQueue& input, int width, int height, double seconds,
             const std::function<void()>& bind);
 
@@ -62,19 +62,19 @@ class Inspector {
   [[nodiscard]] Ui& ui() { return ui_; }
   [[nodiscard]] const Preferences& preferences() const { return preferences_; }
   [[nodiscard]] bool closing() const { return closing_; }
-  /// Closes, once it is decided what becomes of unsaved changes and of work in the background.
+  /// Closes, after the user has decided about background work and unsaved changes.
   void close() {
-    quit_asked_ = true;
-    if (!session_.jobs.running()) leave();
+    quit_requested_ = true;
+    if (!session_.jobs.running()) closeDocument();
   }
-  /// Whether pictures change without input.
+  /// Whether the picture changes without input.
   [[nodiscard]] bool needsRedraw();
-  /// Where to write the screenshot that the user has asked for; once.
+  /// Returns the file for a requested screenshot, and clears the request.
   std::optional<std::filesystem::path> takeScreenshotRequest();
-  /// Where the numbered pictures of a movie go; "": none is being made.
+  /// Directory of the numbered pictures of a movie; "": not recording.
   [[nodiscard]] const std::filesystem::path& movieDirectory() const { return movie_directory_; }
-  /// The session's state by name, as text, for scripts and tests: "frame", "pairs", … Nothing for
-  /// an unknown name.
+  /// Returns a value of the session's state as text, for scripts and tests: "frame", "pairs", …
+  /// Nothing for an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
   [[nodiscard]] const std::vector<PanelTab>& panels() const { return panels_; }
   [[nodiscard]] bool hasPanel(std::string_view name) const {
@@ -82,7 +82,7 @@ class Inspector {
   }
 
  private:
-  void restyle();
+  void applyStyle();
   void loadFonts();
   void build(const RunProgress& progress, int width, int height);
   void drawMenus(const RunProgress& progress);
@@ -97,23 +97,23 @@ class Inspector {
   void drawStatus(const RunProgress& progress);
   void drawHelp();
   void drawErrors();
-  /// While `quit_asked_`: whether to end the work in the background, or to stay.
+  /// While `quit_requested_`: asks whether to cancel the background work.
   void drawQuitDialog();
-  /// Closes, once it is decided what becomes of unsaved changes.
-  void leave();
+  /// Closes, after the user has decided about unsaved changes.
+  void closeDocument();
   void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
   void makeShortcuts();
   void handleShortcuts();
-  /// The keys that do what is explained so, for menus.
+  /// Returns the keys of the shortcut with this description, for menus.
   [[nodiscard]] std::string keysFor(std::string_view doc) const;
-  /// Before a picture: lets keys move among widgets, or not.
+  /// Enables or disables keyboard navigation for the next picture.
   void prepareNavigation();
-  void focusPlace(int step);
+  void focusNextArea(int step);
   void enterPanel(const PanelTab& panel);
-  /// To be called inside the window of a place: gives it the keys if they are to go there.
-  void takeFocus(std::size_t place);
+  /// Call inside the window of an area: focuses it if requested.
+  void focusIfRequested(std::size_t area);
   void escape();
-  void takeTool(Tool tool);
+  void toggleTool(Tool tool);
   void editAuthored(const std::function<void(scenes::SceneEditor&)>& change);
   void askOpen();
   void askSaveRecording();
@@ -130,15 +130,15 @@ class Inspector {
   Views views_;
   std::vector<PanelTab> panels_;
   std::vector<Shortcut> shortcuts_;
-  bool help_ = false;
-  bool navigates_ = false;               ///< keys move among the widgets
-  std::optional<std::size_t> to_focus_;  ///< which of the places, in the next picture
+  bool help_open_ = false;
+  bool keyboard_navigation_ = false;          ///< keys move the focus among widgets
+  std::optional<std::size_t> focus_request_;  ///< area to focus in the next picture
   std::size_t focused_ = 0;
-  bool quit_asked_ = false;  ///< the quit dialog is open
+  bool quit_requested_ = false;  ///< the quit dialog is open
   bool closing_ = false;
-  float screen_scale_;    ///< that the screen suggests
-  bool restyle_ = false;  ///< theme or scale are others than in the last picture
-  bool screenshot_asked_ = false;
+  float screen_scale_;          ///< suggested by the screen
+  bool style_changed_ = false;  ///< theme or scale has changed since the last picture
+  bool screenshot_requested_ = false;
   int screenshots_ = 0;
   std::filesystem::path movie_directory_;
 };

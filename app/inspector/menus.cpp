@@ -1,4 +1,4 @@
-// The menus, and the dialogs that they open.
+// The menus, and the dialogs opened by them.
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -40,11 +40,11 @@ void Inspector::drawMenus(const RunProgress& progress) {
       askExportTimings(formatFrameTable(session_.playback.scene(), progress.tracks));
     }
     ImGui::Separator();
-    if (ui_.menuItem("Screenshot", keysFor(kTakePicture).c_str())) screenshot_asked_ = true;
+    if (ui_.menuItem("Screenshot", keysFor(kSaveScreenshot).c_str())) screenshot_requested_ = true;
     if (movie_directory_.empty()) {
       if (ui_.menuItem("Record movie…")) askMovie();
     } else if (ui_.menuItem("End movie")) {
-      session_.notices.say(fmt::format("movie: {}", movie_directory_.string()));
+      session_.notices.setStatus(fmt::format("movie: {}", movie_directory_.string()));
       movie_directory_.clear();
     }
     ImGui::Separator();
@@ -55,26 +55,26 @@ void Inspector::drawMenus(const RunProgress& progress) {
     const auto scope = ui_.scope("View menu");
     if (ui_.menuItem("Dark", nullptr, preferences_.dark)) {
       preferences_.dark = true;
-      restyle_ = true;
+      style_changed_ = true;
     }
     if (ui_.menuItem("Light", nullptr, !preferences_.dark)) {
       preferences_.dark = false;
-      restyle_ = true;
+      style_changed_ = true;
     }
     ImGui::Separator();
     drawScaleMenu();
     if (ui_.menuItem("Reset layout")) resetLayout();
     ImGui::Separator();
     for (const auto& panel : panels_) {
-      const std::string keys = keysFor(fmt::format("the panel {}", panel.name));
+      const std::string keys = keysFor(fmt::format("show the panel {}", panel.name));
       if (ui_.menuItem(panel.name, keys.c_str()))
-        session_.notices.wanted_panels.push_back(panel.name);
+        session_.notices.panels_to_raise.push_back(panel.name);
     }
     ImGui::EndMenu();
   }
   if (ui_.beginMenu("Help")) {
     const auto scope = ui_.scope("Help");
-    if (ui_.menuItem("Keys and mouse", keysFor(kShowKeys).c_str())) help_ = true;
+    if (ui_.menuItem("Keys and mouse", keysFor(kShowHelp).c_str())) help_open_ = true;
     ImGui::Separator();
     ui_.faint(fmt::format("Broadmark {}", thisEnvironment().version));
     ImGui::EndMenu();
@@ -84,9 +84,9 @@ void Inspector::drawMenus(const RunProgress& progress) {
 
 void Inspector::resetLayout() {
   preferences_.resetLayout();
-  for (const auto& [place, name] : kDockAreas.entries) {
-    const auto first = std::ranges::find(panels_, place, &PanelTab::area);
-    if (first != panels_.end()) session_.notices.bringUp(first->name);
+  for (const auto& [area, name] : kDockAreas.entries) {
+    const auto first = std::ranges::find(panels_, area, &PanelTab::area);
+    if (first != panels_.end()) session_.notices.raisePanel(first->name);
   }
 }
 
@@ -99,7 +99,7 @@ void Inspector::drawScaleMenu() {
         scale == 0 ? "as the screen suggests" : fmt::format("{:.0f} %", 100 * scale);
     if (ui_.menuItem(name.c_str(), nullptr, preferences_.scale == scale)) {
       preferences_.scale = scale;
-      restyle_ = true;
+      style_changed_ = true;
     }
   }
   ImGui::EndMenu();
@@ -107,7 +107,7 @@ void Inspector::drawScaleMenu() {
 
 void Inspector::askOpen() {
   std::vector<std::string> extensions = recordingExtensions();
-  for (const char* of_results : {".json", ".jsonl"}) extensions.emplace_back(of_results);
+  for (const char* extension : {".json", ".jsonl"}) extensions.emplace_back(extension);
   files_.ask({.title = "Open a recording, a scene or results",
               .extensions = std::move(extensions),
               .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
@@ -116,7 +116,7 @@ void Inspector::askOpen() {
 
 void Inspector::askSaveRecording() {
   SceneInfo scene = session_.playback.scene();
-  files_.ask({.title = "Save the frames known so far as a recording",
+  files_.ask({.title = "Save the available frames as a recording",
               .purpose = FileDialog::Purpose::save,
               .extensions = boxRecordingExtensions(),
               .suggestion = fs::path(recordingFileName(scene)),
@@ -129,9 +129,9 @@ void Inspector::askExportTimings(const std::string& table) {
               .extensions = {".csv"},
               .suggestion = "timings.csv",
               .chosen = [this, table](const fs::path& path) {
-                session_.notices.attempt([&] {
+                session_.notices.catchErrors([&] {
                   writeTextFile(path, table);
-                  session_.notices.say(fmt::format("written: {}", path.string()));
+                  session_.notices.setStatus(fmt::format("written: {}", path.string()));
                 });
               }});
 }

@@ -22,15 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Off-screen, this much time passes from picture to picture, the same on every machine.
+/// Time per off-screen picture, fixed for reproducible results.
 constexpr double kOffscreenSeconds = 1.0 / 60;
-/// Between two looks when nothing moves.
+/// Longest wait for input while nothing moves.
 constexpr double kIdleSeconds = 0.25;
-/// At least this much time between two pictures.
+/// Minimum time between two pictures.
 constexpr double kPictureSeconds = 1.0 / 60;
 
-/// A running script, which may be untrusted: meanwhile only files below the current folder are
-/// written.
+/// A running script, which may be untrusted: only files below the current folder may be written.
 struct Script {
   explicit Script(const fs::path& path)
       : player(parseScript(readTextFile(path), path.string()), path.string()) {}
@@ -43,7 +42,7 @@ std::unique_ptr<Script> scriptOf(const fs::path& path) {
   return path.empty() ? nullptr : std::make_unique<Script>(path);
 }
 
-/// One step of a script. It may fail at what does not come as an error has come in its place.
+/// Plays a step of a script. A failure also names the session's error, its likely cause.
 void play(Script& script, Inspector& inspector, InputQueue& input) {
   try {
     script.player.update(inspector, input);
@@ -54,10 +53,10 @@ void play(Script& script, Inspector& inspector, InputQueue& input) {
   }
 }
 
-/// The pictures of a movie, one for each frame that is shown.
+/// Writes the pictures of a movie, one per shown frame.
 class Movie {
  public:
-  void take(Inspector& inspector, const std::function<Picture()>& picture) {
+  void capture(Inspector& inspector, const std::function<Picture()>& picture) {
     const fs::path& directory = inspector.movieDirectory();
     if (directory.empty()) {
       count_ = 0;
@@ -66,7 +65,7 @@ class Movie {
     std::optional<std::string> frame = inspector.value("shown_frame");
     if (count_ > 0 && frame == last_) return;
     last_ = frame;
-    inspector.session().notices.attempt([&] {
+    inspector.session().notices.catchErrors([&] {
       makeDirectory(directory);
       writePng(directory / fmt::format("frame_{:05}.png", count_++), picture());
     });
@@ -77,12 +76,12 @@ class Movie {
   std::optional<std::string> last_;
 };
 
-/// Writes the pictures that the user has asked for.
-void takePictures(Inspector& inspector, Movie& movie, const std::function<Picture()>& picture) {
+/// Writes a requested screenshot, and the picture of a movie.
+void writePictures(Inspector& inspector, Movie& movie, const std::function<Picture()>& picture) {
   if (const auto path = inspector.takeScreenshotRequest()) {
-    inspector.session().notices.attempt([&] { writePng(*path, picture()); });
+    inspector.session().notices.catchErrors([&] { writePng(*path, picture()); });
   }
-  movie.take(inspector, picture);
+  movie.capture(inspector, picture);
 }
 
 void linkClipboard(Window& window) {
@@ -92,42 +91,42 @@ void linkClipboard(Window& window) {
     static_cast<Window*>(user)->setClipboard(text);
   };
   io.GetClipboardTextFn = [](void* user) {
-    static std::string held;
-    held = static_cast<Window*>(user)->clipboard();
-    return held.c_str();
+    static std::string text;
+    text = static_cast<Window*>(user)->clipboard();
+    return text.c_str();
   };
 }
 
 /// Opens the plan's source, and adds its algorithms.
-void begin(Session& session, Plan plan) {
+void openPlan(Session& session, Plan plan) {
   const std::optional<std::uint32_t> frame = plan.request.frame;
   session.open(std::move(plan));
   if (frame) session.playback.goTo(*frame);
 }
 
-/// Opens a window and returns when it is closed. Throws RenderError where no window can be opened.
+/// Opens a window and returns when it is closed. Throws RenderError if no window can be opened.
 void inspectInWindow(Plan plan, const fs::path& script_file) {
-  const fs::path remembered = preferencesPath();
-  Preferences preferences = loadPreferences(remembered);
+  const fs::path preferences_path = preferencesPath();
+  Preferences preferences = loadPreferences(preferences_path);
   Window window("Broadmark", preferences.window_width, preferences.window_height);
   const Gl gl{[](const char* name) { return Window::function(name); }};
   std::unique_ptr<Script> script = scriptOf(script_file);
   {
     Inspector inspector(gl, plan.algorithms, preferences, window.scale(),
-                        hostMaker(plan.request.hosts));
+                        executorFactory(plan.request.hosts));
     linkClipboard(window);
-    begin(inspector.session(), std::move(plan));
+    openPlan(inspector.session(), std::move(plan));
     Movie movie;
-    auto before = std::chrono::steady_clock::now();
+    auto last_draw = std::chrono::steady_clock::now();
     const auto bind = [&gl] { gl.BindFramebuffer(GL_FRAMEBUFFER, 0); };
     while (!inspector.closing()) {
       const auto now = std::chrono::steady_clock::now();
-      const double seconds = std::chrono::duration<double>(now - before).count();
-      const bool needsRedraw = inspector.needsRedraw() || script || !window.input().empty();
-      window.poll(needsRedraw ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
-      for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
+      const double seconds = std::chrono::duration<double>(now - last_draw).count();
+      const bool needs_redraw = inspector.needsRedraw() || script || !window.input().empty();
+      window.poll(needs_redraw ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
+      for (const fs::path& file : window.consumeDrops()) inspector.session().open(file);
       if (window.closing()) {
-        window.stayOpen();  // until the user has decided about unsaved changes
+        window.cancelClosing();  // until the user has decided about unsaved changes
         inspector.close();
       }
       if (script) {
@@ -135,60 +134,60 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
         if (script->player.done()) script.reset();
       }
       if (window.width() < 1 || window.height() < 1) continue;  // minimised
-      before = std::chrono::steady_clock::now();
+      last_draw = std::chrono::steady_clock::now();
       inspector.draw(window.input(), window.width(), window.height(),
-                     std::chrono::duration<double>(before - now).count() + seconds, bind);
-      takePictures(inspector, movie,
-                   [&] { return readPicture(gl, window.width(), window.height()); });
+                     std::chrono::duration<double>(last_draw - now).count() + seconds, bind);
+      writePictures(inspector, movie,
+                    [&] { return readPicture(gl, window.width(), window.height()); });
       window.setCursor(ImGui::GetMouseCursor());
       window.swap();
     }
     preferences = inspector.preferences();
   }
-  script.reset();  // the preferences lie elsewhere
+  script.reset();  // ends the sandbox: the preferences are outside of it
   preferences.window_width = static_cast<int>(static_cast<float>(window.width()) / window.scale());
   preferences.window_height =
       static_cast<int>(static_cast<float>(window.height()) / window.scale());
   try {
-    savePreferences(remembered, preferences);
+    savePreferences(preferences_path, preferences);
   } catch (const InputError& error) {
     std::cerr << fmt::format("broadmark: {}\n", error.what());
   }
 }
 
-/// Draws into pictures only, until the script is done and all is computed. Preferences are neither
-/// read nor written. Throws InputError when the script fails, RenderError.
+/// Draws off-screen until the script is done and the session is idle. Preferences are neither read
+/// nor written. Throws RenderError, and InputError if the script fails.
 void inspectOffscreen(Plan plan, const fs::path& script_file) {
   const RunRequest request = plan.request;
   const auto context = makeOffscreenContext(request.picture.gl);
   const Gl gl(*context);
   std::unique_ptr<Script> script = scriptOf(script_file);
-  Inspector inspector(gl, plan.algorithms, {}, 1, hostMaker(request.hosts));
-  begin(inspector.session(), std::move(plan));
+  Inspector inspector(gl, plan.algorithms, {}, 1, executorFactory(request.hosts));
+  openPlan(inspector.session(), std::move(plan));
   InputQueue input;
   Movie movie;
   int width = request.picture.width;
   int height = request.picture.height;
   auto target = std::make_unique<Framebuffer>(gl, width, height, 1);
-  // Sizes are final only after the first pictures.
-  for (int calm = 0; calm < 4 && !inspector.closing();) {
+  // Layout sizes are final only after the first pictures.
+  for (int idle_pictures = 0; idle_pictures < 4 && !inspector.closing();) {
     if (script) play(*script, inspector, input);
     if (const auto size = script ? script->player.takeResize() : std::nullopt) {
       std::tie(width, height) = *size;
       target = std::make_unique<Framebuffer>(gl, width, height, 1);
     }
     inspector.draw(input, width, height, kOffscreenSeconds, [&] { target->bind(); });
-    gl.Finish();  // otherwise unfinished pictures pile up in the driver, gigabytes of them
+    gl.Finish();  // otherwise the driver queues gigabytes of unfinished pictures
     const auto picture = [&] { return target->read(); };
-    takePictures(inspector, movie, picture);
+    writePictures(inspector, movie, picture);
     if (const auto path = script ? script->player.takeScreenshot() : std::nullopt) {
       writePng(*path, picture());
     }
     const bool busy = (script && !script->player.done()) || inspector.needsRedraw();
-    calm = busy ? 0 : calm + 1;
+    idle_pictures = busy ? 0 : idle_pictures + 1;
     if (busy && input.empty()) inspector.session().runs.waitUntilIdle(std::chrono::milliseconds(2));
   }
-  script.reset();  // the last picture goes where the user wants it
+  script.reset();  // ends the sandbox: the screenshot may be outside of it
   if (!request.screenshot.empty()) writePng(request.screenshot, target->read());
   if (!inspector.session().notices.errors.empty()) {
     throw InputError(inspector.session().notices.errors.front());

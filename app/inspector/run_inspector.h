@@ -1,4 +1,4 @@
-// The inspector as the main command runs it.
+// Runs the inspector, for the main command.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@ namespace broadmark {
 
 struct Plan;
 
-/// Opens the plan's source in a window, or off-screen. Plays the script, if there is one ("").
-/// Returns the exit status. Throws InputError.
+/// Opens the plan's source in a window or off-screen, and plays the script ("": none). Returns the
+/// exit status. Throws InputError.
 int runInspector(Plan plan, bool in_window, const std::filesystem::path& script);
 
 }  // namespace broadmark

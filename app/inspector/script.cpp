@@ -18,38 +18,38 @@
 namespace broadmark {
 namespace {
 
-/// Longest wait for an expected value while something goes on, in seconds.
-constexpr double kPatience = 60;
+/// Longest wait for an expected value while the session is busy, in seconds.
+constexpr double kTimeout = 60;
 
 std::vector<std::string> splitWords(std::string_view line) {
   std::vector<std::string> words;
   std::string word;
   bool quoted = false;
-  bool begun = false;
+  bool started = false;
   for (const char c : line) {
     if (c == '"') {
       quoted = !quoted;
-      begun = true;
-    } else if (!quoted && c == '#' && !begun) {
+      started = true;
+    } else if (!quoted && c == '#' && !started) {
       break;
     } else if (!quoted && (c == ' ' || c == '\t' || c == '\r')) {
-      if (begun) words.push_back(std::exchange(word, {}));
-      begun = false;
+      if (started) words.push_back(std::exchange(word, {}));
+      started = false;
     } else {
       word += c;
-      begun = true;
+      started = true;
     }
   }
-  if (begun) words.push_back(word);
+  if (started) words.push_back(word);
   return words;
 }
 
-bool holds(const std::string& value, const std::string& relation, const std::string& wanted) {
-  if (relation == "=") return value == wanted;
-  if (relation == "!=") return value != wanted;
-  if (relation == "~") return value.find(wanted) != std::string::npos;
+bool satisfies(const std::string& value, const std::string& relation, const std::string& expected) {
+  if (relation == "=") return value == expected;
+  if (relation == "!=") return value != expected;
+  if (relation == "~") return value.find(expected) != std::string::npos;
   const auto a = numberIn(value);
-  const auto b = numberIn(wanted);
+  const auto b = numberIn(expected);
   if (!a || !b) return false;
   if (relation == "<") return *a < *b;
   if (relation == ">") return *a > *b;
@@ -57,7 +57,7 @@ bool holds(const std::string& value, const std::string& relation, const std::str
   return *a >= *b;
 }
 
-ImVec2 within(const WidgetPlace& place, float x, float y) {
+ImVec2 pointIn(const WidgetPlace& place, float x, float y) {
   return {place.min.x + x * (place.max.x - place.min.x),
           place.min.y + y * (place.max.y - place.min.y)};
 }
@@ -81,59 +81,59 @@ const std::vector<ScriptVerb>& scriptVerbs() {
   using Words = ScriptVerb::Words;
   static const std::vector<ScriptVerb> verbs = {
       {"click", "WIDGET", 1, 1, "presses a widget, by name: \"Playback/Play\"",
-       [](P& player, const Words& words, Inspector&) { player.pressAt(words[0], 0, 1); }},
+       [](P& player, const Words& words, Inspector&) { player.clickWidget(words[0], 0, 1); }},
       {"doubleclick", "WIDGET", 1, 1, "presses it twice",
-       [](P& player, const Words& words, Inspector&) { player.pressAt(words[0], 0, 2); }},
+       [](P& player, const Words& words, Inspector&) { player.clickWidget(words[0], 0, 2); }},
       {"rightclick", "WIDGET", 1, 1, "presses it with the right button",
-       [](P& player, const Words& words, Inspector&) { player.pressAt(words[0], 1, 1); }},
-      {"enter", "WIDGET TEXT", 2, 2, "replaces what an input holds, and confirms it", &P::enter},
-      {"choose", "WIDGET OPTION", 2, 2, "opens a list, and chooses from it",
+       [](P& player, const Words& words, Inspector&) { player.clickWidget(words[0], 1, 1); }},
+      {"enter", "WIDGET TEXT", 2, 2, "replaces the text of an input, and confirms it", &P::enter},
+      {"choose", "WIDGET OPTION", 2, 2, "opens a list, and selects an option",
        [](P& player, const Words& words, Inspector&) {
-         player.pressAt(words[0], 0, 1);
-         player.pressAt(fmt::format("{}/{}", words[0], words[1]), 0, 1);
+         player.clickWidget(words[0], 0, 1);
+         player.clickWidget(fmt::format("{}/{}", words[0], words[1]), 0, 1);
        }},
-      {"type", "TEXT", 1, 1, "types letters into whatever has the focus", &P::type},
+      {"type", "TEXT", 1, 1, "types into the focused widget", &P::type},
       {"key", "KEYS", 1, 1, "presses keys together: Space, Ctrl+O", &P::key},
-      {"move", "WIDGET X Y", 3, 3, "moves the mouse to a place in a widget, each from 0 to 1",
+      {"move", "WIDGET X Y", 3, 3, "moves the mouse to a position in a widget, from 0 to 1",
        [](P& player, const Words& words, Inspector&) {
          player.reveal(words[0]);
-         player.moveInto(words[0], player.number(words[1]), player.number(words[2]));
+         player.movePointer(words[0], player.number(words[1]), player.number(words[2]));
        }},
       {"drag", "WIDGET X Y X Y [BUTTON [KEY]]", 5, 7,
-       "drags from one place in a widget to another; with the left button (0) or the right one "
-       "(1), perhaps while Shift, Ctrl or Alt is down",
+       "drags from one position in a widget to another, with the left (0) or right (1) button, "
+       "optionally with Shift, Ctrl or Alt",
        &P::drag},
       {"wheel", "WIDGET TURNS", 2, 2, "turns the wheel over a widget",
        [](P& player, const Words& words, Inspector&) {
          player.reveal(words[0]);
-         player.moveInto(words[0], 0.5F, 0.5F);
+         player.movePointer(words[0], 0.5F, 0.5F);
          player.push({.kind = InputEvent::Kind::wheel, .y = player.number(words[1])});
        }},
       {"panel", "NAME", 1, 1, "brings a panel to the front",
        [](P& player, const Words& words, Inspector& inspector) {
          if (!inspector.hasPanel(words[0]))
            player.fail(fmt::format("unknown panel '{}'", words[0]));
-         inspector.session().notices.bringUp(words[0]);
-         player.pause();
+         inspector.session().notices.raisePanel(words[0]);
+         player.waitPictures();
        }},
       {"open", "FILE", 1, 1, "drops a file onto the window",
        [](P& player, const Words& words, Inspector& inspector) {
          inspector.session().open(words[0]);
-         player.pause();
+         player.waitPictures();
        }},
-      {"wait", "PICTURES or idle", 1, 1, "until everything is computed, or for some pictures",
-       &P::wait},
+      {"wait", "PICTURES or idle", 1, 1,
+       "waits until everything is computed, or for a number of pictures", &P::wait},
       {"expect", "VALUE RELATION TEXT", 3, 3,
-       "waits until a value of the session is =, !=, <, >, <= or >= to the text, or contains it "
-       "(~), and fails if that does not happen",
+       "waits until a value of the session compares to the text by =, !=, <, >, <= or >=, or "
+       "contains it (~), and fails otherwise",
        &P::expect},
       {"patience", "SECONDS", 1, 1,
-       "how long from here on an expectation may take while nothing goes on (at first 2)",
+       "sets how long later expectations wait while nothing happens (default 2)",
        [](P& player, const Words& words, Inspector&) {
-         player.idle_patience_ = static_cast<double>(player.number(words[0]));
+         player.idle_timeout_ = static_cast<double>(player.number(words[0]));
        }},
       {"places", "FILE", 1, 1,
-       "writes where the widgets are: a line each of left, top, right, bottom (pixels) and name",
+       "writes the positions of all widgets: lines of left, top, right, bottom (pixels) and name",
        &P::places},
       {"write", "VALUE FILE", 2, 2, "writes a value of the session to a file",
        [](P& player, const Words& words, Inspector&) {
@@ -147,18 +147,18 @@ const std::vector<ScriptVerb>& scriptVerbs() {
              });
        }},
       {"resize", "WIDTHxHEIGHT", 1, 1, "changes the size of the picture", &P::resize},
-      {"screenshot", "FILE", 1, 1, "saves what is seen",
+      {"screenshot", "FILE", 1, 1, "saves the picture",
        [](P& player, const Words& words, Inspector&) {
          player.screenshot_ = words[0];
-         player.pause();
+         player.waitPictures();
        }},
   };
   return verbs;
 }
 
 std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name) {
-  std::vector<std::string> known;
-  for (const ScriptVerb& verb : scriptVerbs()) known.emplace_back(verb.name);
+  std::vector<std::string> names;
+  for (const ScriptVerb& verb : scriptVerbs()) names.emplace_back(verb.name);
   std::vector<ScriptLine> lines;
   int number = 0;
   while (!text.empty()) {
@@ -167,14 +167,14 @@ std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name
     text.remove_prefix(std::min(end + 1, text.size()));
     ++number;
     if (words.empty()) continue;
-    const auto place = std::ranges::find(known, words[0]);
-    if (place == known.end()) {
+    const auto found = std::ranges::find(names, words[0]);
+    if (found == names.end()) {
       throw InputError(
-          fmt::format("{}: line {}: {}", name, number, unknownName("verb", words[0], known)));
+          fmt::format("{}: line {}: {}", name, number, unknownName("verb", words[0], names)));
     }
-    const ScriptVerb& verb = scriptVerbs()[static_cast<std::size_t>(place - known.begin())];
+    const ScriptVerb& verb = scriptVerbs()[static_cast<std::size_t>(found - names.begin())];
     words.erase(words.begin());
-    if (words.size() < verb.fewest || words.size() > verb.most) {
+    if (words.size() < verb.min_words || words.size() > verb.max_words) {
       throw InputError(
           fmt::format("{}: line {}: expected: {} {}", name, number, verb.name, verb.arguments));
     }
@@ -200,7 +200,7 @@ const WidgetPlace& ScriptPlayer::place(Inspector& inspector, const std::string& 
 
 void ScriptPlayer::update(Inspector& inspector, InputQueue& input) {
   while (true) {
-    if (!input.empty()) return;  // the last picture has not taken everything in
+    if (!input.empty()) return;  // not fully processed by the last picture
     if (!steps_.empty()) {
       if (!steps_.front()(inspector, input)) return;
       steps_.erase(steps_.begin());
@@ -209,7 +209,7 @@ void ScriptPlayer::update(Inspector& inspector, InputQueue& input) {
     if (next_ == lines_.size()) return;
     const ScriptLine line = lines_[next_++];
     number_ = line.number;
-    line.verb->begin(*this, line.words, inspector);
+    line.verb->enqueue(*this, line.words, inspector);
   }
 }
 
@@ -220,7 +220,7 @@ void ScriptPlayer::push(InputEvent event) {
   });
 }
 
-/// Waits until the widget is there and in sight.
+/// Waits until the widget exists, scrolled into view.
 void ScriptPlayer::reveal(const std::string& widget) {
   const auto start = std::chrono::steady_clock::now();
   int pictures = 0;
@@ -228,35 +228,35 @@ void ScriptPlayer::reveal(const std::string& widget) {
     const WidgetPlace* found = inspector.ui().find(widget);
     ++pictures;
     if (found != nullptr && found->visible) {
-      // What has just been done may show in the next picture only.
+      // Effects of the last step may appear only in the next picture.
       if (!found->enabled && pictures > 4) {
         fail(fmt::format("the widget '{}' is disabled", widget));
       }
       return found->enabled && pictures > 1;
     }
     if (found == nullptr) {
-      // Perhaps in a panel that is behind another.
+      // The widget may be in a panel behind another.
       const std::string panel = widget.substr(0, widget.find('/'));
-      if (inspector.hasPanel(panel) && pictures < 3) inspector.session().notices.bringUp(panel);
+      if (inspector.hasPanel(panel) && pictures < 3) inspector.session().notices.raisePanel(panel);
     } else {
       inspector.ui().reveal(widget);
     }
-    if (pictures > 30 && secondsSince(start) > idle_patience_) {
-      if (found != nullptr) fail(fmt::format("the widget '{}' is out of sight", widget));
-      static_cast<void>(place(inspector, widget));  // fails, with the nearest name
+    if (pictures > 30 && secondsSince(start) > idle_timeout_) {
+      if (found != nullptr) fail(fmt::format("the widget '{}' is not visible", widget));
+      static_cast<void>(place(inspector, widget));  // fails, suggesting the nearest name
     }
     return false;
   });
 }
 
-void ScriptPlayer::moveInto(const std::string& widget, float x, float y) {
+void ScriptPlayer::movePointer(const std::string& widget, float x, float y) {
   steps_.push_back([this, widget, x, y](Inspector& inspector, InputQueue& input) {
-    input.push(moveTo(within(place(inspector, widget), x, y)));
+    input.push(moveTo(pointIn(place(inspector, widget), x, y)));
     return true;
   });
 }
 
-void ScriptPlayer::pause(int pictures) {
+void ScriptPlayer::waitPictures(int pictures) {
   for (; pictures > 0; --pictures) {
     steps_.emplace_back([](Inspector&, InputQueue&) { return true; });
   }
@@ -268,9 +268,9 @@ float ScriptPlayer::number(const std::string& text) const {
   return static_cast<float>(*value);
 }
 
-void ScriptPlayer::pressAt(const std::string& widget, int button, int times) {
+void ScriptPlayer::clickWidget(const std::string& widget, int button, int times) {
   reveal(widget);
-  moveInto(widget, 0.5F, 0.5F);
+  movePointer(widget, 0.5F, 0.5F);
   for (int time = 0; time < times; ++time) {
     push(buttonEvent(button, true));
     push(buttonEvent(button, false));
@@ -278,7 +278,7 @@ void ScriptPlayer::pressAt(const std::string& widget, int button, int times) {
 }
 
 void ScriptPlayer::enter(const Words& words, Inspector& inspector) {
-  pressAt(words[0], 0, 1);
+  clickWidget(words[0], 0, 1);
   key({"Ctrl+A"}, inspector);
   if (words[1].empty()) key({"Delete"}, inspector);
   type({words[1]}, inspector);
@@ -318,23 +318,23 @@ void ScriptPlayer::drag(const Words& words, Inspector&) {
   const int button = words.size() > 5 ? static_cast<int>(number(words[5])) : 0;
   const Key held = words.size() > 6 ? keyNamed(words[6]) : 0;
   reveal(widget);
-  // The widget may move along: what counts is where it was.
-  const auto where = std::make_shared<WidgetPlace>();
+  // The widget may move during the drag: use its initial position.
+  const auto initial = std::make_shared<WidgetPlace>();
   const auto move_to = [&](float x, float y) {
-    steps_.push_back([where, x, y](Inspector&, InputQueue& input) {
-      input.push(moveTo(within(*where, x, y)));
+    steps_.push_back([initial, x, y](Inspector&, InputQueue& input) {
+      input.push(moveTo(pointIn(*initial, x, y)));
       return true;
     });
   };
-  steps_.push_back([this, widget, where](Inspector& inspector, InputQueue&) {
-    *where = place(inspector, widget);
+  steps_.push_back([this, widget, initial](Inspector& inspector, InputQueue&) {
+    *initial = place(inspector, widget);
     return true;
   });
   move_to(at[0], at[1]);
   if (held != 0) push(keyEvent(held, true));
   push(buttonEvent(button, true));
-  for (const float share : {0.25F, 0.5F, 0.75F, 1.0F}) {
-    move_to(at[0] + share * (at[2] - at[0]), at[1] + share * (at[3] - at[1]));
+  for (const float fraction : {0.25F, 0.5F, 0.75F, 1.0F}) {
+    move_to(at[0] + fraction * (at[2] - at[0]), at[1] + fraction * (at[3] - at[1]));
   }
   push(buttonEvent(button, false));
   if (held != 0) push(keyEvent(held, false));
@@ -342,11 +342,11 @@ void ScriptPlayer::drag(const Words& words, Inspector&) {
 
 void ScriptPlayer::wait(const Words& words, Inspector&) {
   const std::string until = currentScriptWord(words[0]);
-  if (until != "idle") return pause(static_cast<int>(number(until)));
+  if (until != "idle") return waitPictures(static_cast<int>(number(until)));
   const auto start = std::chrono::steady_clock::now();
   int pictures = 0;
   steps_.push_back([this, start, pictures](Inspector& inspector, InputQueue&) mutable {
-    if (secondsSince(start) > 10 * kPatience) fail("still computing");
+    if (secondsSince(start) > 10 * kTimeout) fail("still computing");
     return ++pictures > 2 && inspector.session().runs.isIdle();
   });
 }
@@ -361,10 +361,10 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
   steps_.push_back([this, name = currentScriptWord(words[0]), relation, text = words[2], start,
                     busy_at = start](Inspector& inspector, InputQueue&) mutable {
     const std::optional<std::string> now = inspector.value(name);
-    if (now && holds(*now, relation, text)) return true;
-    // It may become so as long as something goes on, and for a while after that.
+    if (now && satisfies(*now, relation, text)) return true;
+    // The value may change while the session is busy, and shortly after.
     if (inspector.session().busy()) busy_at = std::chrono::steady_clock::now();
-    if (secondsSince(start) < kPatience && secondsSince(busy_at) < idle_patience_) return false;
+    if (secondsSince(start) < kTimeout && secondsSince(busy_at) < idle_timeout_) return false;
     if (!now) fail(fmt::format("unknown value '{}'", name));
     fail(fmt::format("expected {} {} {}, but it is '{}'", name, relation, text, *now));
   });
@@ -389,7 +389,7 @@ void ScriptPlayer::resize(const Words& words, Inspector&) {
     return static_cast<int>(std::clamp(number(text), 1.0F, 16384.0F));
   };
   resize_ = {side(words[0].substr(0, x)), side(words[0].substr(x + 1))};
-  pause(2);
+  waitPictures(2);
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Scripts: what a user does, line by line, with assertions; for demonstrations and tests.
+// Scripts of user actions and assertions, for demonstrations and tests.
 #pragma once
 
 #include <filesystem>
@@ -14,51 +14,51 @@ namespace broadmark {
 
 class ScriptPlayer;
 
-/// The first word of a line.
+/// A command of the script language: the first word of a line.
 struct ScriptVerb {
   using Words = std::vector<std::string>;
 
   const char* name;
-  const char* arguments;  ///< for people: "WIDGET TEXT"
-  std::size_t fewest;     ///< words that follow it
-  std::size_t most;
+  const char* arguments;  ///< for messages and help: "WIDGET TEXT"
+  std::size_t min_words;  ///< minimum number of arguments
+  std::size_t max_words;
   const char* doc;
-  std::function<void(ScriptPlayer&, const Words&, Inspector&)> begin;
+  std::function<void(ScriptPlayer&, const Words&, Inspector&)> enqueue;
 };
 const std::vector<ScriptVerb>& scriptVerbs();
 
 /// One line of a script.
 struct ScriptLine {
-  int number = 0;  ///< in its file, from 1
+  int number = 0;  ///< in the file, from 1
   const ScriptVerb* verb = nullptr;
-  ScriptVerb::Words words;  ///< what follows it; "quoted text" is one word
+  ScriptVerb::Words words;  ///< arguments; "quoted text" is one word
 };
 
-/// Throws InputError naming `name`, the line and what would be right.
+/// Throws InputError with `name`, the line and the expected syntax.
 std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name);
 
-/// Goes through a script, picture by picture.
+/// Plays a script, picture by picture.
 class ScriptPlayer {
  public:
   ScriptPlayer(std::vector<ScriptLine> lines, std::string name);
 
-  /// Before a picture: feeds `input`, or looks at what the last picture shows. Throws InputError,
-  /// naming the line, when a widget is not there or an assertion fails.
+  /// Call before each picture: adds to `input`, or inspects the last picture. Throws InputError
+  /// with the line if a widget does not exist or an assertion fails.
   void update(Inspector& inspector, InputQueue& input);
   [[nodiscard]] bool done() const { return next_ == lines_.size() && steps_.empty(); }
 
-  /// The size that the picture is to get; once.
+  /// Returns the requested picture size, and clears the request.
   std::optional<std::pair<int, int>> takeResize() { return std::exchange(resize_, {}); }
-  /// Where to write a picture; once.
+  /// Returns the file for a requested screenshot, and clears the request.
   std::optional<std::filesystem::path> takeScreenshot() { return std::exchange(screenshot_, {}); }
 
  private:
   friend const std::vector<ScriptVerb>& scriptVerbs();
   using Words = ScriptVerb::Words;
-  /// Called once a picture until it returns true.
+  /// Called once per picture until it returns true.
   using Step = std::function<bool(Inspector&, InputQueue&)>;
 
-  // Verbs: each adds its steps.
+  // Verbs. Each one enqueues its steps.
   void enter(const Words& words, Inspector& inspector);
   void type(const Words& words, Inspector& inspector);
   void key(const Words& words, Inspector& inspector);
@@ -68,12 +68,12 @@ class ScriptPlayer {
   void places(const Words& words, Inspector& inspector);
   void resize(const Words& words, Inspector& inspector);
 
-  void pressAt(const std::string& widget, int button, int times);
-  void moveInto(const std::string& widget, float x, float y);
+  void clickWidget(const std::string& widget, int button, int times);
+  void movePointer(const std::string& widget, float x, float y);
   void reveal(const std::string& widget);
   void push(InputEvent event);
-  /// Waits for this number of pictures.
-  void pause(int pictures = 1);
+  /// Waits for a number of pictures.
+  void waitPictures(int pictures = 1);
   [[nodiscard]] float number(const std::string& text) const;
   [[nodiscard]] const WidgetPlace& place(Inspector& inspector, const std::string& widget) const;
   [[noreturn]] void fail(const std::string& what) const;
@@ -81,9 +81,9 @@ class ScriptPlayer {
   std::vector<ScriptLine> lines_;
   std::string name_;
   std::size_t next_ = 0;
-  int number_ = 0;            ///< of the line being played
-  double idle_patience_ = 2;  ///< in seconds
-  std::vector<Step> steps_;   ///< pending steps of the current line
+  int number_ = 0;           ///< number of the current line
+  double idle_timeout_ = 2;  ///< seconds
+  std::vector<Step> steps_;  ///< pending steps of the current line
   std::optional<std::pair<int, int>> resize_;
   std::optional<std::filesystem::path> screenshot_;
 };

@@ -1,4 +1,4 @@
-// What keys do, and the page that lists it.
+// The keyboard shortcuts, and the help page.
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -14,29 +14,29 @@
 namespace broadmark {
 namespace {
 
-/// What the mouse does, for the help page.
+/// Mouse actions, for the help page.
 constexpr std::pair<const char*, const char*> kMouse[] = {
-    {"Left drag", "turn the camera about the middle"},
-    {"Right or middle drag", "move the camera sideways"},
-    {"Wheel", "towards the pointer, or away"},
+    {"Left drag", "orbit the camera"},
+    {"Right or middle drag", "pan the camera"},
+    {"Wheel", "zoom towards the pointer, or away"},
     {"Click", "select a body or its group (with Ctrl: add or remove it)"},
-    {"Alt + click", "select a body of a group alone"},
-    {"Drag a handle", "move, turn or scale the selected bodies (with Ctrl: by steps)"},
-    {"Click, drag with brush", "paint bodies on the ground or on others"},
+    {"Alt + click", "select a single body of a group"},
+    {"Drag a handle", "move, turn or scale the selected bodies (with Ctrl: snap to steps)"},
+    {"Click, drag with brush", "paint bodies on the ground or on other bodies"},
     {"Shift + drag", "select all bodies in a rectangle"},
     {"Double click", "fly to a body"},
     {"Drop a file", "open it"},
 };
 
-/// While keys move among the widgets; Dear ImGui handles them.
+/// Keys of the keyboard navigation, which Dear ImGui handles; for the help page.
 constexpr std::pair<const char*, const char*> kNavigation[] = {
-    {"Arrows", "after F6, or in a list: to the next widget"},
-    {"Enter, Space", "on a focused widget: press it, or type into it"},
-    {"Alt", "on a focused widget: to the menus, and back"},
-    {"Escape", "on a focused widget: back, and finally to the view"},
+    {"Arrows", "after F6, or in a list: focus the next widget"},
+    {"Enter, Space", "press the focused widget, or edit its text"},
+    {"Alt", "after F6: focus the menus, or return"},
+    {"Escape", "after F6: back, and finally to the view"},
 };
 
-/// Keys that move among the widgets once F6 has been pressed.
+/// Whether keyboard navigation uses the key of this shortcut.
 bool movesFocus(const Shortcut& shortcut) {
   constexpr Key kKeys[] = {GLFW_KEY_SPACE, GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_HOME,
                            GLFW_KEY_END};
@@ -49,35 +49,35 @@ void Inspector::makeShortcuts() {
   shortcuts_ = {
       {GLFW_KEY_SPACE, false, false, "play or pause",
        [this] { session_.play(!session_.playback.playing()); }},
-      {GLFW_KEY_LEFT, false, false, "one frame back", [this] { session_.playback.step(-1); }},
-      {GLFW_KEY_RIGHT, false, false, "one frame on", [this] { session_.playback.step(1); }},
-      {GLFW_KEY_HOME, false, false, "to the first frame", [this] { session_.playback.goTo(0); }},
-      {GLFW_KEY_END, false, false, "to the last frame",
+      {GLFW_KEY_LEFT, false, false, "previous frame", [this] { session_.playback.step(-1); }},
+      {GLFW_KEY_RIGHT, false, false, "next frame", [this] { session_.playback.step(1); }},
+      {GLFW_KEY_HOME, false, false, "go to the first frame", [this] { session_.playback.goTo(0); }},
+      {GLFW_KEY_END, false, false, "go to the last frame",
        [this] { session_.playback.goTo(session_.playback.lastFrame()); }},
       {GLFW_KEY_F, false, false, "fly to the selection, or to all",
-       [this] { session_.selection.flyThere(); }},
-      {GLFW_KEY_H, false, false, "hide what overlaps nothing, or show it",
+       [this] { session_.selection.flyToSelection(); }},
+      {GLFW_KEY_H, false, false, "hide or show bodies without overlaps",
        [this] { session_.display.hide_free = !session_.display.hide_free; }},
-      {GLFW_KEY_C, false, false, "the next colouring",
+      {GLFW_KEY_C, false, false, "next colouring",
        [this] {
          ++session_.display.colouring;
          session_.display.filter.hidden_classes = 0;
        }},
-      {GLFW_KEY_V, false, false, "a second view beside the first, or one",
+      {GLFW_KEY_V, false, false, "open or close the second view",
        [this] { session_.showSecond(!session_.second); }},
-      {GLFW_KEY_M, false, false, "authored scene: the gizmo that moves, or none",
-       [this] { takeTool(Tool::move); }},
-      {GLFW_KEY_T, false, false, "in an authored scene: the gizmo that rotates",
-       [this] { takeTool(Tool::turn); }},
-      {GLFW_KEY_R, false, false, "in an authored scene: the gizmo that scales",
-       [this] { takeTool(Tool::scale); }},
+      {GLFW_KEY_M, false, false, "authored scene: move gizmo on or off",
+       [this] { toggleTool(Tool::move); }},
+      {GLFW_KEY_T, false, false, "authored scene: rotation gizmo on or off",
+       [this] { toggleTool(Tool::turn); }},
+      {GLFW_KEY_R, false, false, "authored scene: scale gizmo on or off",
+       [this] { toggleTool(Tool::scale); }},
       {GLFW_KEY_L, false, false,
-       "in an authored scene: gizmo along the first body's axes, or the world's",
+       "authored scene: align the gizmo with the first body or with the world",
        [this] { session_.document.tools.local = !session_.document.tools.local; }},
-      {GLFW_KEY_B, false, false, "in an authored scene: the brush, or none",
-       [this] { takeTool(Tool::brush); }},
+      {GLFW_KEY_B, false, false, "authored scene: brush on or off",
+       [this] { toggleTool(Tool::brush); }},
       {GLFW_KEY_ESCAPE, false, false,
-       "close a list, a dialog, this page; take a drag back; no brush; no span; no body",
+       "close a list, a dialog or this page; cancel a drag; clear the brush, span or selection",
        [this] { escape(); }},
       {GLFW_KEY_O, true, false, kOpenFile, [this] { askOpen(); }},
       {GLFW_KEY_S, true, false, kSave,
@@ -88,31 +88,32 @@ void Inspector::makeShortcuts() {
            askSaveRecording();
          }
        }},
-      {GLFW_KEY_Z, true, false, "undo an edit of the scene",
+      {GLFW_KEY_Z, true, false, "undo an edit",
        [this] { editAuthored(&scenes::SceneEditor::undo); }},
-      {GLFW_KEY_Z, true, true, "redo it", [this] { editAuthored(&scenes::SceneEditor::redo); }},
+      {GLFW_KEY_Z, true, true, "redo an edit",
+       [this] { editAuthored(&scenes::SceneEditor::redo); }},
       {GLFW_KEY_A, true, false, "select all bodies of the authored scene",
        [this] { editAuthored(&scenes::SceneEditor::selectAll); }},
-      {GLFW_KEY_D, true, false, "copy the selected bodies; the copies are in their places",
+      {GLFW_KEY_D, true, false, "duplicate the selected bodies in place",
        [this] { editAuthored([](scenes::SceneEditor& editor) { editor.duplicate({}); }); }},
       {GLFW_KEY_G, true, false, "group the selected bodies: a click selects all of them",
        [this] { editAuthored(&scenes::SceneEditor::group); }},
-      {GLFW_KEY_G, true, true, "ungroup them",
+      {GLFW_KEY_G, true, true, "ungroup the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::ungroup); }},
       {GLFW_KEY_DELETE, false, false, "delete the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
-      {GLFW_KEY_F6, false, false, "to the next place; then arrows move among its widgets",
-       [this] { focusPlace(1); }},
-      {GLFW_KEY_F6, false, true, "focuses the previous panel", [this] { focusPlace(-1); }},
-      {GLFW_KEY_F1, false, false, kShowKeys, [this] { help_ = !help_; }},
-      {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
+      {GLFW_KEY_F6, false, false, "focus the next area; then arrows move among its widgets",
+       [this] { focusNextArea(1); }},
+      {GLFW_KEY_F6, false, true, "focus the previous area", [this] { focusNextArea(-1); }},
+      {GLFW_KEY_F1, false, false, kShowHelp, [this] { help_open_ = !help_open_; }},
+      {GLFW_KEY_F12, false, false, kSaveScreenshot, [this] { screenshot_requested_ = true; }},
       {GLFW_KEY_Q, true, false, kQuit, [this] { close(); }},
   };
-  // From 1 to 9 and 0, then with Shift from 1 on.
+  // Ctrl+1 to Ctrl+9 and Ctrl+0, then the same with Shift.
   constexpr std::size_t kDigits = 10;
   for (std::size_t i = 0; i < std::min(panels_.size(), 2 * kDigits); ++i) {
     shortcuts_.push_back({static_cast<Key>(GLFW_KEY_0 + (i + 1) % kDigits), true, i >= kDigits,
-                          fmt::format("the panel {}", panels_[i].name),
+                          fmt::format("show the panel {}", panels_[i].name),
                           [this, i] { enterPanel(panels_[i]); }});
   }
 }
@@ -130,36 +131,36 @@ void Inspector::prepareNavigation() {
   ImGuiIO& io = ImGui::GetIO();
   const bool popup = !GImGui->OpenPopupStack.empty();
   for (const bool pressed : io.MouseDown) {
-    if (pressed) navigates_ = false;
+    if (pressed) keyboard_navigation_ = false;
   }
-  const bool on = navigates_ || popup;
+  const bool on = keyboard_navigation_ || popup;
   io.ConfigFlags = on ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
                       : io.ConfigFlags & ~ImGuiConfigFlags_NavEnableKeyboard;
-  // Enter presses as Space does; in a dialog it answers that.
+  // Enter acts like Space, except in a dialog, which it confirms.
   const bool enter = io.KeysDown[GLFW_KEY_ENTER] && !io.WantTextInput;
   if (on && !ui_.inDialog() && enter) io.NavInputs[ImGuiNavInput_Activate] = 1;
   if (!on) GImGui->NavDisableHighlight = true;
 }
 
-void Inspector::focusPlace(int step) {
-  // The places, then the playback.
+void Inspector::focusNextArea(int step) {
+  // The dock areas, then the playback.
   const auto count = static_cast<int>(kDockAreas.entries.size() + 1);
-  const int from = navigates_ ? static_cast<int>(focused_) : step > 0 ? -1 : 0;
-  to_focus_ = static_cast<std::size_t>((from + step + count) % count);
+  const int from = keyboard_navigation_ ? static_cast<int>(focused_) : step > 0 ? -1 : 0;
+  focus_request_ = static_cast<std::size_t>((from + step + count) % count);
 }
 
 void Inspector::enterPanel(const PanelTab& panel) {
-  session_.notices.bringUp(panel.name);
+  session_.notices.raisePanel(panel.name);
   for (std::size_t i = 0; i < kDockAreas.entries.size(); ++i) {
-    if (kDockAreas.entries[i].value == panel.area) to_focus_ = i;
+    if (kDockAreas.entries[i].value == panel.area) focus_request_ = i;
   }
 }
 
-void Inspector::takeFocus(std::size_t place) {
-  if (to_focus_ != place) return;
-  to_focus_.reset();
-  focused_ = place;
-  navigates_ = true;
+void Inspector::focusIfRequested(std::size_t area) {
+  if (focus_request_ != area) return;
+  focus_request_.reset();
+  focused_ = area;
+  keyboard_navigation_ = true;
   ImGuiWindow* const window = ImGui::GetCurrentWindow();
   ImGui::FocusWindow(window);
   ImGui::NavInitWindow(window, true);
@@ -168,13 +169,13 @@ void Inspector::takeFocus(std::size_t place) {
 
 void Inspector::escape() {
   if (!ui_.escaped()) return;
-  if (navigates_) {
-    navigates_ = false;
+  if (keyboard_navigation_) {
+    keyboard_navigation_ = false;
     return;
   }
   Tools& tools = session_.document.tools;
-  if (help_) {
-    help_ = false;
+  if (help_open_) {
+    help_open_ = false;
   } else if (views_.first().hands().cancel()) {
     return;
   } else if (session_.document.shown() && tools.tool == Tool::brush) {
@@ -186,7 +187,7 @@ void Inspector::escape() {
   }
 }
 
-void Inspector::takeTool(Tool tool) {
+void Inspector::toggleTool(Tool tool) {
   if (session_.document.shown()) session_.document.tools.toggle(tool);
 }
 
@@ -199,20 +200,20 @@ void Inspector::handleShortcuts() {
   const bool dialog = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
   if (io.WantTextInput || dialog) return;
   for (const Shortcut& shortcut : shortcuts_) {
-    if (navigates_ && movesFocus(shortcut)) continue;
+    if (keyboard_navigation_ && movesFocus(shortcut)) continue;
     if (io.KeyCtrl == shortcut.ctrl && io.KeyShift == shortcut.shift && !io.KeyAlt &&
-        ImGui::IsKeyPressed(shortcut.key)) {
-      shortcut.act();
+        ImGui::IsKeyPressed(static_cast<ImGuiKey>(shortcut.key))) {
+      shortcut.action();
     }
   }
 }
 
 void Inspector::drawHelp() {
-  if (!help_) return;
+  if (!help_open_) return;
   const auto scope = ui_.scope("Keys and mouse");
   ui_.placeInMiddle({600, 660});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
-  ImGui::Begin("Keys and mouse", &help_,
+  ImGui::Begin("Keys and mouse", &help_open_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::BeginTable("keys", 2)) {
@@ -234,7 +235,7 @@ void Inspector::drawHelp() {
     for (const auto& [what, doc] : kNavigation) row(what, doc);
     ImGui::EndTable();
   }
-  if (ui_.button("Close")) help_ = false;
+  if (ui_.button("Close")) help_open_ = false;
   ImGui::End();
   ImGui::PopStyleVar();
 }

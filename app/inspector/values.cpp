@@ -1,4 +1,4 @@
-// The session's state as text, by name: what scripts and tests assert.
+// The session's state as text, by name, for scripts and tests.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,9 +17,9 @@
 namespace broadmark {
 namespace {
 
-const char* yes(bool is) { return is ? "yes" : "no"; }
+const char* yesOrNo(bool value) { return value ? "yes" : "no"; }
 
-std::string textOf(bool is) { return yes(is); }
+std::string textOf(bool value) { return yesOrNo(value); }
 std::string textOf(std::integral auto number) { return std::to_string(number); }
 std::string textOf(double number) { return fmt::format("{:.6g}", number); }
 template <std::size_t count>
@@ -44,8 +44,8 @@ void addTracks(Values& values, const Session& session, const RunProgress& progre
     const FrameRecord* record = track.record(track.frame);
     values[name + "pairs"] = record ? std::to_string(record->counts[FrameCount::pairs]) : "";
     if (const auto span = session.timeline.span()) {
-      const auto of = statisticsOf(track.curves.pairs, track.curves.disturbed, *span);
-      values[name + "span_frames"] = std::to_string(of.values.size() + of.disturbed);
+      const auto in_span = statisticsOf(track.curves.pairs, track.curves.disturbed, *span);
+      values[name + "span_frames"] = std::to_string(in_span.values.size() + in_span.disturbed);
     }
   }
 }
@@ -70,7 +70,7 @@ void addSnapshot(Values& values, const Snapshot* shown) {
 
 void addSecond(Values& values, const Session& session, const RunProgress& progress) {
   const Snapshot* second = progress.second.get();
-  values["second"] = yes(session.second.has_value());
+  values["second"] = yesOrNo(session.second.has_value());
   values["second.frame"] = second ? std::to_string(second->frame) : "";
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";
@@ -96,7 +96,7 @@ std::string legendText(const std::vector<LegendEntry>& legend) {
 void addTimeline(Values& values, const Timeline& timeline) {
   values["timeline.first"] = fmt::format("{:.1f}", timeline.first());
   values["timeline.last"] = fmt::format("{:.1f}", timeline.last());
-  values["timeline.zoomed"] = yes(timeline.zoomed());
+  values["timeline.zoomed"] = yesOrNo(timeline.zoomed());
   const auto span = timeline.span();
   values["timeline.span"] = span ? fmt::format("{}-{}", span->first, span->last) : "";
 }
@@ -104,18 +104,18 @@ void addTimeline(Values& values, const Timeline& timeline) {
 void addAuthored(Values& values, Session& session) {
   const Document& document = session.document;
   const scenes::AuthoredScene& scene = document.editor.scene();
-  values["author.shown"] = yes(document.shown());
-  values["author.at_rest"] = yes(document.atRest());
+  values["author.shown"] = yesOrNo(document.shown());
+  values["author.at_rest"] = yesOrNo(document.atRest());
   values["author.name"] = scene.name;
   values["author.bodies"] = std::to_string(scene.bodies.size());
   values["author.selection"] = std::to_string(document.editor.selection().size());
   values["author.undo"] = document.editor.undoName();
   values["author.redo"] = document.editor.redoName();
-  values["author.modified"] = yes(document.isModified());
+  values["author.modified"] = yesOrNo(document.isModified());
   values["author.path"] = document.path().string();
   values["author.tool"] = kTools.nameOf(document.tools.tool);
-  values["author.local"] = yes(document.tools.local);
-  values["author.leaving"] = yes(document.leaving != nullptr);
+  values["author.local"] = yesOrNo(document.tools.local);
+  values["author.leaving"] = yesOrNo(document.pending_close != nullptr);
   for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
   if (document.editor.selection().empty()) return;
   const scenes::AuthoredBody& body = scene.bodies[document.editor.selection().front()];
@@ -134,13 +134,13 @@ void addCases(Values& values, std::optional<OpenedResults>& results) {
   values["cases"] = results ? std::to_string(rows.size()) : "";
   values["cases.listed"] = results ? std::to_string(results->listed().size()) : "";
   values["cases.marked"] = std::to_string(std::ranges::count_if(rows, &OpenedResults::Row::marked));
-  values["cases.wrong"] = results ? std::to_string(results->wrong()) : "";
+  values["cases.wrong"] = results ? std::to_string(results->wrongCount()) : "";
   values["cases.scaling"] = results ? std::to_string(results->scaling(Phase::total).size()) : "";
   const bool any = results && !results->listed().empty();
   values["cases.first"] = any ? rows[results->listed().front()].result.id : "";
 }
 
-/// Whether the first selected body is there.
+/// Presence of the first selected body.
 std::string presenceText(const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
   if (bodies.empty() || !snapshot || bodies.front() >= snapshot->boxes->size()) return "";
@@ -148,21 +148,21 @@ std::string presenceText(const Session& session, const Snapshot* snapshot) {
   return snapshot->trails.empty() ? "absent" : absenceText(snapshot->trails.front());
 }
 
-/// Of the two selected bodies, if there are two.
+/// Adds values of the selected pair, if exactly two bodies are selected.
 void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
-  const bool chosen = bodies.size() == 2;
-  values["pair"] = chosen ? pairName({bodies[0], bodies[1]}) : "";
-  if (!chosen || !snapshot || bodies[1] >= snapshot->boxes->size()) return;
+  const bool is_pair = bodies.size() == 2;
+  values["pair"] = is_pair ? pairName({bodies[0], bodies[1]}) : "";
+  if (!is_pair || !snapshot || bodies[1] >= snapshot->boxes->size()) return;
   const Aabb& a = (*snapshot->boxes)[bodies[0]];
   const Aabb& b = (*snapshot->boxes)[bodies[1]];
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-    const AxisRelation relation = relationOn(axis, a, b);
+    const AxisRelation relation = axisRelation(axis, a, b);
     values[fmt::format("pair.gap.{}", kAxes[axis])] = fmt::format("{}", relation.gap);
     values[fmt::format("pair.relation.{}", kAxes[axis])] = kRelations.nameOf(relation.type);
   }
-  values["pair.axis"] = kAxes[decidingAxis(a, b)];
-  values["pair.overlaps"] = yes(overlaps(a, b));
+  values["pair.axis"] = kAxes[maxSeparationAxis(a, b)];
+  values["pair.overlaps"] = yesOrNo(overlaps(a, b));
   values["pair.history"] =
       snapshot->trails.size() == 2 ? std::to_string(snapshot->trails[0].boxes.size()) : "0";
 }
@@ -171,12 +171,12 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   Values values;
   values["frame"] = std::to_string(session.playback.frame());
   values["last_frame"] = std::to_string(session.playback.lastFrame());
-  values["known_frames"] = std::to_string(progress.known_frames);
-  values["doing"] = progress.doing;
-  values["playing"] = yes(session.playback.playing());
-  values["achieved"] =
-      session.playback.achieved() ? fmt::format("{:.1f}", *session.playback.achieved()) : "";
-  values["loop"] = yes(session.playback.loop);
+  values["known_frames"] = std::to_string(progress.available_frames);
+  values["doing"] = progress.activity;
+  values["playing"] = yesOrNo(session.playback.playing());
+  const auto rate = session.playback.achievedRate();
+  values["achieved"] = rate ? fmt::format("{:.1f}", *rate) : "";
+  values["loop"] = yesOrNo(session.playback.loop);
   values["speed"] = fmt::format("{:g}", session.playback.frames_per_second);
   values["source"] = sourceText(progress.source.get());
   values["title"] = progress.source ? progress.source->title : "";
@@ -185,9 +185,9 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["algorithms"] = std::to_string(session.tracks.list.size());
   values["selection"] = fmt::format("{}", session.selection.bodies().size());
   values["colouring"] = std::to_string(session.display.colouring);
-  values["hide_free"] = yes(session.display.hide_free);
-  values["pair_lines"] = yes(session.display.pair_lines);
-  values["check"] = yes(session.mismatches.check);
+  values["hide_free"] = yesOrNo(session.display.hide_free);
+  values["pair_lines"] = yesOrNo(session.display.pair_lines);
+  values["check"] = yesOrNo(session.mismatches.check);
   values["stop_frame"] = progress.stop ? std::to_string(progress.stop->frame) : "";
   values["error"] = session.notices.errors.empty() ? "" : session.notices.errors.front();
   values["status"] = session.notices.status.text;
@@ -218,7 +218,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addSecond(values, session, progress);
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
-  values["searching"] = yes(session.mismatches.searching());
+  values["searching"] = yesOrNo(session.mismatches.searching());
   addCases(values, session.results);
   return values;
 }
@@ -236,7 +236,7 @@ std::optional<std::string> Inspector::value(const std::string& name) {
     const std::string prefix = &view == &views_.first() ? "view." : "second.";
     values[prefix + "where"] = view.answer().where;
     values[prefix + "answer"] = view.answer().answer;
-    values[prefix + "oracle"] = view.answer().beside;
+    values[prefix + "oracle"] = view.answer().comparison;
     values[prefix + "pair"] = view.answer().pair;
     values[prefix + "yaw"] = fmt::format("{:.4f}", view.camera().yaw);
     values[prefix + "distance"] = fmt::format("{:.4f}", view.camera().distance);
@@ -255,11 +255,11 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["layout"] =
       fmt::format("{:g} {:g} {:g}", preferences_.left, preferences_.right, preferences_.bottom);
   values["theme"] = preferences_.dark ? "dark" : "light";
-  values["help"] = yes(help_);
+  values["help"] = yesOrNo(help_open_);
   values["focus"] = ui_.focused();
   values["popup"] =
-      yes(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel));
-  values["dialog"] = yes(files_.isOpen());
+      yesOrNo(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel));
+  values["dialog"] = yesOrNo(files_.isOpen());
   const auto found = values.find(name);
   if (found == values.end()) return {};
   return found->second;

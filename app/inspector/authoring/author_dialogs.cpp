@@ -37,7 +37,7 @@ void saveScene(FileDialog& files, Session& session, std::function<void()> then) 
 }
 
 void askBakeScene(FileDialog& files, Session& session) {
-  session.notices.attempt([&] {
+  session.notices.catchErrors([&] {
     files.ask({.title = "Bake all frames into a recording",
                .purpose = FileDialog::Purpose::save,
                .extensions = recordingExtensions(),
@@ -47,14 +47,14 @@ void askBakeScene(FileDialog& files, Session& session) {
 }
 
 void drawLeaving(Ui& ui, FileDialog& files, Session& session) {
-  if (!session.document.leaving || !session.notices.errors.empty() || files.isOpen()) return;
+  if (!session.document.pending_close || !session.notices.errors.empty() || files.isOpen()) return;
   const auto scope = ui.scope("Unsaved");
   const auto answer =
       ui.ask("Unsaved changes",
              fmt::format("The scene '{}' has unsaved changes.", session.document.title()),
-             {{"Save", nullptr}, {"Discard", "The changes are lost"}});
+             {{"Save", nullptr}, {"Discard", "Discard the changes"}});
   if (!answer) return;
-  const auto then = std::exchange(session.document.leaving, {});
+  const auto then = std::exchange(session.document.pending_close, {});
   if (*answer == 0) saveScene(files, session, then);
   if (*answer == 1) then();
 }

@@ -1,4 +1,4 @@
-// Dialogs about the document.
+// Dialogs for opening, saving and baking the document.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,15 @@
 
 namespace broadmark {
 
-/// Asks for a scene file, and opens it.
+/// Asks for a scene file and opens it.
 void askOpenScene(FileDialog& files, Session& session);
-/// Asks for a file and saves the document there, then goes on.
+/// Asks for a file, saves the document to it, and calls `then`.
 void askSaveScene(FileDialog& files, Session& session, std::function<void()> then = {});
-/// Saves the document in its file, or asks for one if it has none; then goes on.
+/// Saves the document to its file, or asks for one if it has none; then calls `then`.
 void saveScene(FileDialog& files, Session& session, std::function<void()> then = {});
 /// Asks for a recording to bake the document into.
 void askBakeScene(FileDialog& files, Session& session);
-/// While `session.document.leaving` waits: whether to save or to discard the changes, or to stay.
+/// Asks whether to save or discard the changes while `session.document.pending_close` is set.
 void drawLeaving(Ui& ui, FileDialog& files, Session& session);
 
 }  // namespace broadmark

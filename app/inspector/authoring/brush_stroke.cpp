@@ -7,29 +7,29 @@
 namespace broadmark {
 namespace {
 
-/// The face of a box by which a line enters it.
-Surface faceOf(const Aabb& box, const ViewProjection::Ray& line) {
+/// Returns the face by which a ray enters a box.
+Surface entryFace(const Aabb& box, const ViewProjection::Ray& ray) {
   Surface face;
-  double latest = -std::numeric_limits<double>::infinity();
+  double entry = -std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (line.direction[axis] == 0) continue;
-    const bool high = line.direction[axis] < 0;
+    if (ray.direction[axis] == 0) continue;
+    const bool high = ray.direction[axis] < 0;
     const double at = high ? box.max[axis] : box.min[axis];
-    const double share = (at - line.from[axis]) / line.direction[axis];
-    if (share <= latest) continue;
-    latest = share;
+    const double distance = (at - ray.from[axis]) / ray.direction[axis];
+    if (distance <= entry) continue;
+    entry = distance;
     face.axis = axis;
     face.sign = high ? 1 : -1;
   }
-  face.point = line.from + latest * line.direction;
+  face.point = ray.from + entry * ray.direction;
   face.point[face.axis] = face.sign > 0 ? box.max[face.axis] : box.min[face.axis];
   return face;
 }
 
-std::optional<Surface> floorUnder(const Aabb& world, const ViewProjection::Ray& line) {
-  const double share = (world.min[1] - line.from[1]) / line.direction[1];
-  if (!(share > 0) || !std::isfinite(share)) return {};
-  Surface floor{.point = line.from + share * line.direction};
+std::optional<Surface> floorUnder(const Aabb& world, const ViewProjection::Ray& ray) {
+  const double distance = (world.min[1] - ray.from[1]) / ray.direction[1];
+  if (!(distance > 0) || !std::isfinite(distance)) return {};
+  Surface floor{.point = ray.from + distance * ray.direction};
   for (const std::size_t axis : {0, 2}) {
     if (floor.point[axis] < world.min[axis] || floor.point[axis] > world.max[axis]) return {};
   }
@@ -40,58 +40,60 @@ std::optional<Surface> floorUnder(const Aabb& world, const ViewProjection::Ray& 
 }  // namespace
 
 std::optional<Surface> surfaceUnder(std::span<const Aabb> boxes, const Aabb& world,
-                                    const ViewProjection& sight, Pixel pixel, BodyMask visible) {
-  const ViewProjection::Ray line = sight.through(pixel);
+                                    const ViewProjection& projection, Pixel pixel,
+                                    BodyMask visible) {
+  const ViewProjection::Ray ray = projection.rayThrough(pixel);
   const auto picked =
-      pickBody(boxes, sight.space(), sight.viewpoint(), pixel[0], pixel[1], visible);
-  if (picked) return faceOf(boxes[picked->body], line);
-  return floorUnder(world, line);
+      pickBody(boxes, projection.space(), projection.viewpoint(), pixel[0], pixel[1], visible);
+  if (picked) return entryFace(boxes[picked->body], ray);
+  return floorUnder(world, ray);
 }
 
 BrushStroke::BrushStroke(const Document& document)
-    : document_(&document), taken_(document.editor.scene().bodies) {}
+    : document_(&document), occupied_(document.editor.scene().bodies) {}
 
 scenes::Paint BrushStroke::nextPaint() const {
   scenes::Paint paint = document_->paint;
-  // No two dabs are alike where the brush scatters.
+  // A new seed for each dab, so that the dabs of a scattering brush differ.
   paint.seed +=
       static_cast<std::int64_t>(document_->editor.scene().bodies.size() + painted_.bodies.size());
   return paint;
 }
 
-Aabb BrushStroke::reach(std::size_t most) const {
+Aabb BrushStroke::dabBounds(std::size_t max_bodies) const {
   Aabb bounds = kEmptyBox;
   for (const scenes::AuthoredBody& body :
-       scenes::paint(document_->brush(), nextPaint(), {}, scenes::OccupiedSpace(), most).bodies) {
+       scenes::paint(document_->brush(), nextPaint(), {}, scenes::OccupiedSpace(), max_bodies)
+           .bodies) {
     bounds = merged(bounds, tightBox(body.shape, body.pose));
   }
   return bounds;
 }
 
-scenes::Stroke BrushStroke::dab(const Surface& surface, std::size_t most) const {
-  const Aabb bounds = reach(most);
+scenes::Stroke BrushStroke::dab(const Surface& surface, std::size_t max_bodies) const {
+  const Aabb bounds = dabBounds(max_bodies);
   Vec3 at;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    double place = surface.point[axis];
-    if (axis == surface.axis) place -= surface.sign > 0 ? bounds.min[axis] : bounds.max[axis];
-    at[axis] = static_cast<float>(place);
+    double coordinate = surface.point[axis];
+    if (axis == surface.axis) coordinate -= surface.sign > 0 ? bounds.min[axis] : bounds.max[axis];
+    at[axis] = static_cast<float>(coordinate);
   }
-  return scenes::paint(document_->brush(), nextPaint(), at, taken_, most);
+  return scenes::paint(document_->brush(), nextPaint(), at, occupied_, max_bodies);
 }
 
 void BrushStroke::paint(const Surface& surface) {
-  if (last_ && last_->axis == surface.axis && last_->sign == surface.sign) {
-    const Aabb bounds = reach(std::numeric_limits<std::size_t>::max());
+  if (last_surface_ && last_surface_->axis == surface.axis && last_surface_->sign == surface.sign) {
+    const Aabb bounds = dabBounds(kUnlimited);
     bool near = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double apart = std::abs(surface.point[axis] - last_->point[axis]);
-      near = near && apart < double{bounds.max[axis]} - double{bounds.min[axis]};
+      const double distance = std::abs(surface.point[axis] - last_surface_->point[axis]);
+      near = near && distance < double{bounds.max[axis]} - double{bounds.min[axis]};
     }
     if (near) return;
   }
-  last_ = surface;
+  last_surface_ = surface;
   scenes::Stroke added = dab(surface);
-  for (const scenes::AuthoredBody& body : added.bodies) taken_.add(body);
+  for (const scenes::AuthoredBody& body : added.bodies) occupied_.add(body);
   painted_.bodies.insert(painted_.bodies.end(), added.bodies.begin(), added.bodies.end());
   painted_.left_out += added.left_out;
 }

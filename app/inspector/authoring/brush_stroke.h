@@ -1,4 +1,4 @@
-// Painting in the view: what the mouse points at, and the bodies that the brush puts there.
+// Painting in the view: the surface under the mouse, and the bodies that the brush adds to it.
 #pragma once
 
 #include <cstddef>
@@ -13,43 +13,43 @@ namespace broadmark {
 
 /// A face of a body's box, or the world's floor.
 struct Surface {
-  Point point = Point::Zero();  ///< that is pointed at
-  std::size_t axis = 1;         ///< along which bodies stand on it…
-  int sign = 1;                 ///< …in this direction
+  Point point = Point::Zero();  ///< under the mouse
+  std::size_t axis = 1;         ///< of the normal
+  int sign = 1;                 ///< of the normal
 };
 
-/// What is seen at a pixel; of the floor only where the world is. O(boxes).
+/// Returns the surface at a pixel; of the floor, only the part within the world. O(boxes).
 std::optional<Surface> surfaceUnder(std::span<const Aabb> boxes, const Aabb& world,
-                                    const ViewProjection& sight, Pixel pixel,
+                                    const ViewProjection& projection, Pixel pixel,
                                     BodyMask visible = {});
 
-/// One stroke of the document's brush, from press to release: a dab where it begins, and others as
-/// far from each other as they are wide. What is painted keeps clear of the document's bodies and
-/// of the stroke's own. For the document as it is: an edit calls for another one.
+/// One stroke of the document's brush, from press to release: dabs at distances of their width,
+/// clear of the document's bodies and of each other. Invalid after an edit of the document.
 class BrushStroke {
  public:
-  /// Takes note of the room that the document's bodies take: O(bodies).
+  /// Computes the space occupied by the document's bodies: O(bodies).
   explicit BrushStroke(const Document& document);
 
-  /// The bodies of a dab on the surface, standing on it; `most` of them or fewer. Throws
-  /// InputError.
-  [[nodiscard]] scenes::Stroke dab(
-      const Surface& surface, std::size_t most = std::numeric_limits<std::size_t>::max()) const;
-  /// Adds a dab, unless the last one is too near. Throws InputError.
+  /// Returns the bodies of a dab, standing on the surface. Throws InputError.
+  [[nodiscard]] scenes::Stroke dab(const Surface& surface,
+                                   std::size_t max_bodies = kUnlimited) const;
+  /// Adds a dab, unless it is too close to the last one. Throws InputError.
   void paint(const Surface& surface);
 
-  /// What has been painted so far.
+  /// The bodies painted so far.
   [[nodiscard]] const scenes::Stroke& painted() const { return painted_; }
 
  private:
-  /// The AABB of a dab around the origin in an empty scene.
-  [[nodiscard]] Aabb reach(std::size_t most) const;
+  static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+
+  /// Returns the AABB of a dab at the origin of an empty scene.
+  [[nodiscard]] Aabb dabBounds(std::size_t max_bodies) const;
   [[nodiscard]] scenes::Paint nextPaint() const;
 
   const Document* document_;
-  scenes::OccupiedSpace taken_;
+  scenes::OccupiedSpace occupied_;
   scenes::Stroke painted_;
-  std::optional<Surface> last_;
+  std::optional<Surface> last_surface_;
 };
 
 }  // namespace broadmark

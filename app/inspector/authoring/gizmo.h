@@ -1,6 +1,5 @@
-// The gizmo: handles around the selected bodies, by which the mouse moves, turns and scales them.
-// Pure geometry: where the handles are, which one is under the mouse, and what a drag of it makes
-// of the bodies.
+// The gizmo: handles by which the mouse moves, turns and scales the selected bodies. Pure geometry:
+// shapes of the handles, hit tests, and transformations by drags.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -34,13 +33,12 @@ class ViewProjection {
   ViewProjection(const ViewSpace& space, const Viewpoint& viewpoint)
       : space_(space), viewpoint_(viewpoint) {}
 
-  /// Nothing for a point behind the eye.
+  /// Returns nothing for a point behind the eye.
   [[nodiscard]] std::optional<Pixel> pixelOf(const Point& point) const;
-  /// The ray through a pixel.
-  [[nodiscard]] Ray through(Pixel pixel) const;
+  [[nodiscard]] Ray rayThrough(Pixel pixel) const;
   [[nodiscard]] Point eye() const;
-  /// The world length that a pixel covers there.
-  [[nodiscard]] double pixelAt(const Point& point) const;
+  /// Returns the world length of a pixel at the depth of the point.
+  [[nodiscard]] double pixelSizeAt(const Point& point) const;
 
   [[nodiscard]] const ViewSpace& space() const { return space_; }
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
@@ -50,7 +48,7 @@ class ViewProjection {
   Viewpoint viewpoint_;
 };
 
-/// An axis (or the ring about it), a plane of two, or all three at once.
+/// An axis (or the ring about it), a plane of two axes, or all three axes.
 enum class Handle { x, y, z, yz, zx, xy, all };
 inline constexpr NameTable kHandles{{NamedValue{Handle::x, "x"},
                                      {Handle::y, "y"},
@@ -60,63 +58,63 @@ inline constexpr NameTable kHandles{{NamedValue{Handle::x, "x"},
                                      {Handle::xy, "xy"},
                                      {Handle::all, "all"}}};
 
-/// Its columns are where the world's axes point once they are turned.
-Eigen::Matrix3d turnOf(const Quaternion& turn);
+/// The columns are the rotated axes of the world.
+Eigen::Matrix3d rotationMatrix(const Quaternion& rotation);
 
-/// Where the gizmo is.
-struct GizmoPlace {
+/// Position, orientation and size of the gizmo.
+struct GizmoPose {
   Vec3 centre{};
-  Quaternion turn{0, 0, 0, 1};  ///< from the world's axes to the gizmo's
-  double length = 1;            ///< of an axis, in world units
+  Quaternion rotation{0, 0, 0, 1};  ///< from the world's axes to the gizmo's
+  double length = 1;                ///< of an axis, in world units
 
-  [[nodiscard]] Point axis(std::size_t which) const {
-    return turnOf(turn).col(static_cast<Eigen::Index>(which));
+  [[nodiscard]] Point axis(std::size_t index) const {
+    return rotationMatrix(rotation).col(static_cast<Eigen::Index>(index));
   }
 };
 
-/// A handle as it is to be drawn and hit: a line through these points, or the area within.
+/// The shape of a handle, to draw and to hit: a polyline or, if `filled`, a polygon.
 struct HandleShape {
   Handle handle = Handle::x;
   std::vector<Point> points;
   bool filled = false;
-  Point grip = Point::Zero();  ///< where the mouse can grab the handle
+  Point grip = Point::Zero();  ///< a point to grab the handle
 };
 
-/// The handles of a tool. Those that could not be dragged are left out: an axis seen from its end,
-/// a plane seen from its edge. Of rings the half before the centre.
-std::vector<HandleShape> handleShapes(Tool tool, const GizmoPlace& place,
-                                      const ViewProjection& sight);
+/// Returns the handles of a tool, without those that cannot be dragged: axes seen end-on, planes
+/// seen edge-on. Rings have only their half in front of the centre.
+std::vector<HandleShape> handleShapes(Tool tool, const GizmoPose& pose,
+                                      const ViewProjection& projection);
 
-/// The handle nearest to a pixel, within `reach` pixels; of a plane also all that is inside.
+/// Returns the handle nearest to a pixel, within `reach` pixels; a plane is hit anywhere inside.
 std::optional<Handle> handleUnder(const std::vector<HandleShape>& shapes,
-                                  const ViewProjection& sight, Pixel pixel, float reach);
+                                  const ViewProjection& projection, Pixel pixel, float reach);
 
-/// One drag of a handle, from press to release, seen from one place.
+/// One drag of a handle, from press to release, with a fixed camera.
 class GizmoDrag {
  public:
-  GizmoDrag(Tool tool, Handle handle, const GizmoPlace& place, const ViewProjection& sight,
+  GizmoDrag(Tool tool, Handle handle, const GizmoPose& pose, const ViewProjection& projection,
             Pixel from);
 
   struct Outcome {
     scenes::Transformation change;
-    std::string text;  ///< the numbers, for people: "x 1.5"
+    std::string text;  ///< for the user: "x 1.5"
   };
-  /// With the mouse there. `snaps`: by the steps of `tools`.
+  /// Returns the outcome with the mouse at this pixel. `snaps`: in the steps of `tools`.
   [[nodiscard]] Outcome at(Pixel pixel, const Tools& tools, bool snaps) const;
 
  private:
   [[nodiscard]] Outcome moved(Pixel pixel, double step) const;
   [[nodiscard]] Outcome turned(Pixel pixel, double step) const;
   [[nodiscard]] Outcome scaled(Pixel pixel, double step) const;
-  /// How far along an axis the mouse is, from the centre.
-  [[nodiscard]] double along(std::size_t axis, Pixel pixel) const;
-  /// Where the mouse is on the plane across an axis, from the centre.
-  [[nodiscard]] std::optional<Point> across(std::size_t axis, Pixel pixel) const;
+  /// Returns the coordinate on an axis, from the centre, of the point nearest to the mouse's ray.
+  [[nodiscard]] double axisCoordinate(std::size_t axis, Pixel pixel) const;
+  /// Returns the point, from the centre, where the mouse's ray hits the plane normal to an axis.
+  [[nodiscard]] std::optional<Point> planePoint(std::size_t axis, Pixel pixel) const;
 
   Tool tool_;
   Handle handle_;
-  GizmoPlace place_;
-  ViewProjection sight_;
+  GizmoPose pose_;
+  ViewProjection projection_;
   Pixel from_;
 };
 

@@ -1,5 +1,4 @@
-// The overlay is drawn over the finished picture of the scene, which therefore need not be redrawn
-// while the mouse moves.
+// Draws over the finished picture of the scene, which need not be redrawn while the mouse moves.
 
 #include "inspector/authoring/viewport_manipulator.h"
 
@@ -17,37 +16,37 @@ namespace {
 
 // In units.
 constexpr float kGizmoLength = 90;
-constexpr float kReach = 8;  // of the mouse, around a handle
-constexpr float kTip = 6;    // half the size of what an axis ends in
-constexpr float kBetweenDabs = 12;
+constexpr float kReach = 8;  // largest distance at which a handle is hit
+constexpr float kTip = 6;    // half the size of an axis' tip
+constexpr float kDabSpacing = 12;
 
 constexpr std::size_t kMaxGhosts = 1000;
-constexpr int kMaxDabsAtOnce = 8;  // in a picture, between two places of the mouse
+constexpr int kMaxDabsAtOnce = 8;  // per picture
 
 Rgb colourOf(Handle handle, const Palette& theme) {
-  // A plane has the colour of the axis across it.
+  // A plane has the colour of its normal.
   return handle == Handle::all ? theme.accent : theme.axis[static_cast<std::size_t>(handle) % 3];
 }
 
 }  // namespace
 
-void ViewportManipulator::look(const Seen& seen) {
-  const auto& shown = seen.session.playback.source();
-  const bool edited = document_ != shown;
+void ViewportManipulator::update(const Input& input) {
+  const auto& shown = input.session.playback.source();
+  const bool edited = source_ != shown;
   if (edited) {
-    document_ = shown;
-    centred_.clear();
+    source_ = shown;
+    centred_bodies_.clear();
     stroke_.reset();
     cancel();
   }
   text_.clear();
-  if (seen.snapshot->source == shown) ghosts_.clear();  // else the bodies are still to come
-  lookAtGizmo(seen);
-  lookAtBrush(seen);
+  if (input.snapshot->source == shown) ghosts_.clear();  // otherwise its bodies are not shown yet
+  updateGizmo(input);
+  updateBrush(input);
 }
 
-void ViewportManipulator::lookAtGizmo(const Seen& seen) {
-  const Document& document = seen.session.document;
+void ViewportManipulator::updateGizmo(const Input& input) {
+  const Document& document = input.session.document;
   const Tools& tools = document.tools;
   const scenes::SceneEditor& editor = document.editor;
   shapes_.clear();
@@ -58,52 +57,52 @@ void ViewportManipulator::lookAtGizmo(const Seen& seen) {
     hot_.reset();
     return;
   }
-  place_ = {.centre = centreOf(seen.session)};
-  if (drag_ && seen.mouse) {
-    const GizmoDrag::Outcome outcome = drag_->at(*seen.mouse, tools, tools.snaps != seen.ctrl);
+  pose_ = {.centre = centreOf(input.session)};
+  if (drag_ && input.mouse) {
+    const GizmoDrag::Outcome outcome = drag_->at(*input.mouse, tools, tools.snaps != input.ctrl);
     change_ = outcome.change;
     text_ = outcome.text;
-    std::vector<scenes::AuthoredBody> changed = taken_;
+    std::vector<scenes::AuthoredBody> changed = captured_;
     for (scenes::AuthoredBody& body : changed) {
       body.shape = transformedShape(body, change_);
       body.pose = transformedPose(body, change_);
     }
     ghosts_ = std::move(changed);
-    for (std::size_t axis = 0; axis < 3; ++axis) place_.centre[axis] += change_.move[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) pose_.centre[axis] += change_.move[axis];
   }
-  if (tools.local) place_.turn = editor.scene().bodies[editor.selection().front()].pose.rotation;
-  place_.length =
-      static_cast<double>(kGizmoLength * seen.scale) * seen.sight.pixelAt(pointOf(place_.centre));
-  if (!(place_.length > 0)) return;  // behind the eye
-  shapes_ = handleShapes(tools.tool, place_, seen.sight);
+  if (tools.local) pose_.rotation = editor.scene().bodies[editor.selection().front()].pose.rotation;
+  pose_.length = static_cast<double>(kGizmoLength * input.scale) *
+                 input.projection.pixelSizeAt(pointOf(pose_.centre));
+  if (!(pose_.length > 0)) return;  // behind the eye
+  shapes_ = handleShapes(tools.tool, pose_, input.projection);
   if (drag_) return;
-  hot_ = seen.mouse ? handleUnder(shapes_, seen.sight, *seen.mouse, kReach * seen.scale)
-                    : std::nullopt;
+  hot_ = input.mouse ? handleUnder(shapes_, input.projection, *input.mouse, kReach * input.scale)
+                     : std::nullopt;
 }
 
 Vec3 ViewportManipulator::centreOf(const Session& session) {
   const scenes::SceneEditor& editor = session.document.editor;
-  if (centred_ != editor.selection()) {
-    centred_ = editor.selection();
+  if (centred_bodies_ != editor.selection()) {
+    centred_bodies_ = editor.selection();
     centre_ = editor.selectionCentre();
   }
   return centre_;
 }
 
-void ViewportManipulator::lookAtBrush(const Seen& seen) {
-  const Document& document = seen.session.document;
+void ViewportManipulator::updateBrush(const Input& input) {
+  const Document& document = input.session.document;
   if (document.tools.tool != Tool::brush || !document.atRest()) {
     painting_ = false;
     stroke_.reset();
     return;
   }
-  if (!seen.mouse) return;
+  if (!input.mouse) return;
   if (!stroke_) stroke_.emplace(document);
   try {
     if (painting_) {
-      paintTo(seen, *seen.mouse);
+      paintTo(input, *input.mouse);
     } else {
-      previewDab(seen);
+      previewDab(input);
     }
   } catch (const InputError& error) {
     cancel();
@@ -111,21 +110,21 @@ void ViewportManipulator::lookAtBrush(const Seen& seen) {
   }
 }
 
-void ViewportManipulator::previewDab(const Seen& seen) {
-  const std::optional<Surface> surface = surfaceAt(seen, *seen.mouse);
+void ViewportManipulator::previewDab(const Input& input) {
+  const std::optional<Surface> surface = surfaceAt(input, *input.mouse);
   if (!surface) return;
   const scenes::Stroke dab = stroke_->dab(*surface, kMaxGhosts);
   ghosts_ = dab.bodies;
   if (dab.bodies.empty()) text_ = "no room here";
 }
 
-void ViewportManipulator::paintTo(const Seen& seen, Pixel to) {
-  const Pixel way = to - painted_at_;
-  const float steps = std::ceil(way.norm() / (kBetweenDabs * seen.scale));
+void ViewportManipulator::paintTo(const Input& input, Pixel to) {
+  const Pixel motion = to - painted_at_;
+  const float steps = std::ceil(motion.norm() / (kDabSpacing * input.scale));
   const int count = std::clamp(static_cast<int>(steps), 1, kMaxDabsAtOnce);
   for (int i = 1; i <= count; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(count);
-    const auto surface = surfaceAt(seen, painted_at_ + share * way);
+    const auto surface = surfaceAt(input, painted_at_ + share * motion);
     if (surface) stroke_->paint(*surface);
   }
   painted_at_ = to;
@@ -135,47 +134,48 @@ void ViewportManipulator::paintTo(const Seen& seen, Pixel to) {
   text_ = counted(bodies.size(), "body", "bodies");
 }
 
-std::optional<Surface> ViewportManipulator::surfaceAt(const Seen& seen, Pixel pixel) {
-  const bool same = pointed_.snapshot == seen.snapshot && pointed_.pixel == pixel &&
-                    pointed_.viewpoint == seen.sight.viewpoint();
+std::optional<Surface> ViewportManipulator::surfaceAt(const Input& input, Pixel pixel) {
+  const bool same = last_surface_.snapshot == input.snapshot && last_surface_.pixel == pixel &&
+                    last_surface_.viewpoint == input.projection.viewpoint();
   if (!same) {
-    pointed_ = {seen.snapshot, seen.sight.viewpoint(), pixel,
-                surfaceUnder(*seen.snapshot->boxes, seen.session.document.editor.scene().world,
-                             seen.sight, pixel, seen.visible)};
+    last_surface_ = {
+        input.snapshot, input.projection.viewpoint(), pixel,
+        surfaceUnder(*input.snapshot->boxes, input.session.document.editor.scene().world,
+                     input.projection, pixel, input.visible)};
   }
-  return pointed_.surface;
+  return last_surface_.surface;
 }
 
-void ViewportManipulator::takeBodies(const scenes::SceneEditor& editor) {
-  taken_.clear();
+void ViewportManipulator::captureBodies(const scenes::SceneEditor& editor) {
+  captured_.clear();
   const std::vector<scenes::AuthoredBody>& bodies = editor.scene().bodies;
   if (editor.selection().size() <= kMaxGhosts) {
-    for (const std::uint32_t id : editor.selection()) taken_.push_back(bodies[id]);
+    for (const std::uint32_t id : editor.selection()) captured_.push_back(bodies[id]);
     return;
   }
   Aabb all = kEmptyBox;
   for (const std::uint32_t id : editor.selection()) {
     all = merged(all, tightBox(bodies[id].shape, bodies[id].pose));
   }
-  taken_.push_back(scenes::bodyIn(all));
+  captured_.push_back(scenes::bodyFilling(all));
 }
 
-bool ViewportManipulator::press(const Seen& seen) {
-  if (!seen.mouse) return false;
-  const Document& document = seen.session.document;
+bool ViewportManipulator::press(const Input& input) {
+  if (!input.mouse) return false;
+  const Document& document = input.session.document;
   if (hot_) {
-    takeBodies(document.editor);
+    captureBodies(document.editor);
     change_ = {};
-    drag_.emplace(document.tools.tool, *hot_, place_, seen.sight, *seen.mouse);
-  } else if (stroke_ && surfaceAt(seen, *seen.mouse)) {
+    drag_.emplace(document.tools.tool, *hot_, pose_, input.projection, *input.mouse);
+  } else if (stroke_ && surfaceAt(input, *input.mouse)) {
     painting_ = true;
-    painted_at_ = *seen.mouse;
+    painted_at_ = *input.mouse;
   }
   return busy();
 }
 
-void ViewportManipulator::release(const Seen& seen) {
-  Document& document = seen.session.document;
+void ViewportManipulator::release(const Input& input) {
+  Document& document = input.session.document;
   if (drag_) {
     drag_.reset();
     document.edit([&](scenes::SceneEditor& editor) {
@@ -185,8 +185,8 @@ void ViewportManipulator::release(const Seen& seen) {
     painting_ = false;
     document.add([this] { return stroke_->painted(); });
   }
-  document_ = seen.session.playback.source();  // the ghosts stay until it is seen
-  centred_.clear();
+  source_ = input.session.playback.source();  // the ghosts stay until it is shown
+  centred_bodies_.clear();
   stroke_.reset();
 }
 
@@ -199,24 +199,24 @@ bool ViewportManipulator::cancel() {
   return true;
 }
 
-void ViewportManipulator::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
-  drawGhosts(ui, seen.sight, corner);
-  const Tool tool = seen.session.document.tools.tool;
+void ViewportManipulator::draw(Ui& ui, const Input& input, ImVec2 corner) const {
+  drawGhosts(ui, input.projection, corner);
+  const Tool tool = input.session.document.tools.tool;
   for (const HandleShape& shape : shapes_) {
-    drawHandle(ui, shape, seen.sight, tool, corner);
-    if (const auto grip = seen.sight.pixelOf(shape.grip)) {
-      const float half = kTip * seen.scale;
+    drawHandle(ui, shape, input.projection, tool, corner);
+    if (const auto grip = input.projection.pixelOf(shape.grip)) {
+      const float half = kTip * input.scale;
       const ImVec2 at{corner.x + (*grip)[0], corner.y + (*grip)[1]};
       ui.noteAt(fmt::format("gizmo {}", kHandles.nameOf(shape.handle)), {at.x - half, at.y - half},
                 {at.x + half, at.y + half});
     }
   }
-  if (text_.empty() || !seen.mouse) return;
+  if (text_.empty() || !input.mouse) return;
   ui.glyphs.request(text_);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float pad = 5 * seen.scale;
+  const float pad = 5 * input.scale;
   const ImVec2 extent = ImGui::CalcTextSize(text_.c_str());
-  const ImVec2 at{corner.x + (*seen.mouse)[0] + 4 * pad, corner.y + (*seen.mouse)[1] + 3 * pad};
+  const ImVec2 at{corner.x + (*input.mouse)[0] + 4 * pad, corner.y + (*input.mouse)[1] + 3 * pad};
   draw.AddRectFilled({at.x - pad, at.y - pad / 2},
                      {at.x + extent.x + pad, at.y + extent.y + pad / 2},
                      colour(ui.theme.background, 0.82F), pad);
@@ -224,10 +224,11 @@ void ViewportManipulator::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
 }
 
 void ViewportManipulator::drawHandle(const Ui& ui, const HandleShape& shape,
-                                     const ViewProjection& sight, Tool tool, ImVec2 corner) const {
+                                     const ViewProjection& projection, Tool tool,
+                                     ImVec2 corner) const {
   std::vector<ImVec2> points;
   for (const Point& point : shape.points) {
-    if (const auto at = sight.pixelOf(point)) {
+    if (const auto at = projection.pixelOf(point)) {
       points.push_back({corner.x + (*at)[0], corner.y + (*at)[1]});
     }
   }
@@ -248,32 +249,33 @@ void ViewportManipulator::drawHandle(const Ui& ui, const HandleShape& shape,
     draw.AddRectFilled({tip.x - half, tip.y - half}, {tip.x + half, tip.y + half}, colour(rgb));
     return;
   }
-  const ImVec2 way{tip.x - points.front().x, tip.y - points.front().y};
-  const float length = std::max(std::hypot(way.x, way.y), 1.0F);
-  const ImVec2 on{way.x / length * half, way.y / length * half};
-  draw.AddTriangleFilled({tip.x + 2 * on.x, tip.y + 2 * on.y}, {tip.x - on.y, tip.y + on.x},
-                         {tip.x + on.y, tip.y - on.x}, colour(rgb));
+  const ImVec2 axis{tip.x - points.front().x, tip.y - points.front().y};
+  const float length = std::max(std::hypot(axis.x, axis.y), 1.0F);
+  const ImVec2 side{axis.x / length * half, axis.y / length * half};
+  draw.AddTriangleFilled({tip.x + 2 * side.x, tip.y + 2 * side.y}, {tip.x - side.y, tip.y + side.x},
+                         {tip.x + side.y, tip.y - side.x}, colour(rgb));
 }
 
-void ViewportManipulator::drawGhosts(const Ui& ui, const ViewProjection& sight,
+void ViewportManipulator::drawGhosts(const Ui& ui, const ViewProjection& projection,
                                      ImVec2 corner) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImU32 line = colour(ui.theme.selected);
   for (const scenes::AuthoredBody& body : ghosts_) {
     const Eigen::Matrix3d half_edges =
-        turnOf(body.pose.rotation) * (pointOf(edgesOf(body.shape)) / 2).asDiagonal();
-    std::array<std::optional<Pixel>, 8> seen;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+        rotationMatrix(body.pose.rotation) * (pointOf(edgesOf(body.shape)) / 2).asDiagonal();
+    std::array<std::optional<Pixel>, 8> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
       const auto side = [i](unsigned axis) { return (i >> axis & 1U) != 0 ? 1.0 : -1.0; };
-      seen[i] = sight.pixelOf(pointOf(body.pose.position) +
-                              half_edges * Point(side(0), side(1), side(2)));
+      corners[i] = projection.pixelOf(pointOf(body.pose.position) +
+                                      half_edges * Point(side(0), side(1), side(2)));
     }
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t j = i | (std::size_t{1} << axis);
-        if (j == i || !seen[i] || !seen[j]) continue;
-        draw.AddLine({corner.x + (*seen[i])[0], corner.y + (*seen[i])[1]},
-                     {corner.x + (*seen[j])[0], corner.y + (*seen[j])[1]}, line, 1.5F * ui.scale);
+        if (j == i || !corners[i] || !corners[j]) continue;
+        draw.AddLine({corner.x + (*corners[i])[0], corner.y + (*corners[i])[1]},
+                     {corner.x + (*corners[j])[0], corner.y + (*corners[j])[1]}, line,
+                     1.5F * ui.scale);
       }
     }
   }

@@ -1,6 +1,6 @@
-// What the mouse does with the document's bodies in the view: drags of the gizmo, strokes of the
-// brush. Nothing of the document changes before the mouse is released; until then ghosts show what
-// would be, so that a crowd is as light as a single body.
+// Editing of the document's bodies with the mouse in the view: gizmo drags and brush strokes. The
+// document changes only when the mouse is released; until then a limited number of ghosts shows the
+// result, so that the cost does not grow with the number of bodies.
 #pragma once
 
 #include <memory>
@@ -17,73 +17,72 @@ namespace broadmark {
 
 class ViewportManipulator {
  public:
-  /// What is seen in a picture; borrowed.
-  struct Seen {
+  /// The state of the view in a picture; borrowed.
+  struct Input {
     Session& session;
     const std::shared_ptr<const Snapshot>& snapshot;
     BodyMask visible;
-    ViewProjection sight;
+    ViewProjection projection;
     float scale = 1;             ///< pixels per unit
-    std::optional<Pixel> mouse;  ///< nothing: elsewhere
-    bool ctrl = false;           ///< whether that key is down
+    std::optional<Pixel> mouse;  ///< nothing: outside the view
+    bool ctrl = false;           ///< the key is down
   };
 
-  /// Once per picture: puts the gizmo and the ghosts where they belong.
-  void look(const Seen& seen);
-  /// The left button goes down, where look() saw the mouse. Returns whether that is for the hands.
-  bool press(const Seen& seen);
-  /// The button comes up: changes the document. A press that has not moved paints, but drags
-  /// nothing.
-  void release(const Seen& seen);
-  /// Gives up what is being done with the button down. Returns whether there was anything.
+  /// Places the gizmo and the ghosts; called once per picture.
+  void update(const Input& input);
+  /// Handles a press of the left button. Returns whether it starts a drag or a stroke.
+  bool press(const Input& input);
+  /// Handles the release: applies the drag or the stroke to the document.
+  void release(const Input& input);
+  /// Cancels the drag or the stroke. Returns whether there was one.
   bool cancel();
-  /// Whether a button is down for the hands.
+  /// Whether a drag or a stroke is in progress.
   [[nodiscard]] bool busy() const { return drag_.has_value() || painting_; }
   [[nodiscard]] bool painting() const { return painting_; }
 
   /// Draws over the picture with this upper left corner, and registers the handles as widgets.
-  void draw(Ui& ui, const Seen& seen, ImVec2 corner) const;
+  void draw(Ui& ui, const Input& input, ImVec2 corner) const;
 
-  /// The numbers of what is being done: "x 1.5"; "": nothing is.
+  /// Text of the drag or the stroke: "x 1.5"; "": none.
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  void lookAtGizmo(const Seen& seen);
-  void lookAtBrush(const Seen& seen);
-  void previewDab(const Seen& seen);
-  void paintTo(const Seen& seen, Pixel to);
-  std::optional<Surface> surfaceAt(const Seen& seen, Pixel pixel);
-  void takeBodies(const scenes::SceneEditor& editor);
-  void drawHandle(const Ui& ui, const HandleShape& shape, const ViewProjection& sight, Tool tool,
-                  ImVec2 corner) const;
-  void drawGhosts(const Ui& ui, const ViewProjection& sight, ImVec2 corner) const;
-  /// The common centre of the selected bodies. O(1) while nothing changes.
+  void updateGizmo(const Input& input);
+  void updateBrush(const Input& input);
+  void previewDab(const Input& input);
+  void paintTo(const Input& input, Pixel to);
+  std::optional<Surface> surfaceAt(const Input& input, Pixel pixel);
+  void captureBodies(const scenes::SceneEditor& editor);
+  void drawHandle(const Ui& ui, const HandleShape& shape, const ViewProjection& projection,
+                  Tool tool, ImVec2 corner) const;
+  void drawGhosts(const Ui& ui, const ViewProjection& projection, ImVec2 corner) const;
+  /// Returns the common centre of the selected bodies, which is cached.
   Vec3 centreOf(const Session& session);
 
-  /// What the document looks like; another one after each edit.
-  std::shared_ptr<const FrameProviderRequest> document_;
+  /// Source of the document's frames, replaced by each edit.
+  std::shared_ptr<const FrameProviderRequest> source_;
 
   // The gizmo.
-  std::vector<HandleShape> shapes_;  ///< none: it is not shown
-  GizmoPlace place_;
-  std::optional<Handle> hot_;  ///< under the mouse, or held
+  std::vector<HandleShape> shapes_;  ///< none: the gizmo is hidden
+  GizmoPose pose_;
+  std::optional<Handle> hot_;  ///< under the mouse, or dragged
   std::optional<GizmoDrag> drag_;
-  scenes::Transformation change_;            ///< of the drag
-  std::vector<scenes::AuthoredBody> taken_;  ///< what its ghosts are made from
-  scenes::BodyIds centred_;                  ///< the bodies of which centre_ is the centre
+  scenes::Transformation change_;               ///< of the drag
+  std::vector<scenes::AuthoredBody> captured_;  ///< at its start
+  scenes::BodyIds centred_bodies_;              ///< bodies of centre_
   Vec3 centre_{};
 
   // The brush.
   std::optional<BrushStroke> stroke_;
   bool painting_ = false;
-  Pixel painted_at_ = Pixel::Zero();  ///< by the stroke, last
-  /// What was pointed at, and from where.
+  Pixel painted_at_ = Pixel::Zero();  ///< last position of the stroke
+  /// The last result of surfaceAt(), with its arguments.
   struct {
     std::shared_ptr<const Snapshot> snapshot;
     Viewpoint viewpoint;
     Pixel pixel = Pixel::Zero();
     std::optional<Surface> surface;
-  } pointed_;
+  } last_surface_;
 
   std::vector<scenes::AuthoredBody> ghosts_;
   std::string text_;

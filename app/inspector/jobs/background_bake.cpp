@@ -24,7 +24,7 @@ void bake(BackgroundBake& job, std::vector<BakeJob> jobs, int threads) {
   };
   const auto on_progress = [&](const BatchState& state) {
     job.update([&](BakeReport& report) {
-      report.doing = state.running;
+      report.activity = state.running;
       report.seconds_left = state.seconds_left;
       report.fraction =
           static_cast<float>(static_cast<double>(state.done) /
@@ -39,7 +39,7 @@ void planAndBake(BackgroundBake& job, const BakeOptions& options) {
   auto plan =
       planBake(options, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
         job.update([&](BakeReport& report) {
-          report.doing = fmt::format("checking {}", path.filename().string());
+          report.activity = fmt::format("checking {}", path.filename().string());
           report.fraction = static_cast<float>(number) / static_cast<float>(total);
         });
         return !job.cancelled();
@@ -74,9 +74,9 @@ std::string BakeReport::text() const {
 }
 
 JobStatus BakeReport::status() const {
-  return {.doing = "Baking: " + text() + ".",
+  return {.activity = "Baking: " + text() + ".",
           .outcome = text(),
-          .faulty = failed() > 0,
+          .is_error = failed() > 0,
           .values = {{"recordings", std::to_string(items.size())},
                      {"done", std::to_string(count(BakeOutcome::baked))},
                      {"kept", std::to_string(count(BakeOutcome::kept))},
@@ -84,7 +84,7 @@ JobStatus BakeReport::status() const {
 }
 
 void startBake(BackgroundBake& job, BakeOptions options) {
-  job.begin({}, [&job, options = std::move(options)] {
+  job.start({}, [&job, options = std::move(options)] {
     planAndBake(job, options);
     return !job.cancelled();
   });
@@ -95,7 +95,7 @@ void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation, fs::
   jobs[0].scene = simulation->scene();
   jobs[0].simulation = std::move(simulation);
   jobs[0].paths = {std::move(path)};
-  job.begin({}, [&job, jobs = std::move(jobs)]() mutable {
+  job.start({}, [&job, jobs = std::move(jobs)]() mutable {
     requireBakeable(*jobs[0].simulation, jobs[0].paths);
     job.update([&](BakeReport& report) { report.items = {{.path = jobs[0].paths[0]}}; });
     bake(job, std::move(jobs), 1);

@@ -1,4 +1,4 @@
-// Baking in the background.
+// Bakes recordings in the background.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,13 @@
 namespace broadmark {
 
 enum class BakeOutcome { waiting, kept, baked, failed };
-/// "" for one that waits.
+/// "" for a waiting recording.
 inline constexpr NameTable kBakeOutcomes{{NamedValue{BakeOutcome::waiting, ""},
                                           {BakeOutcome::kept, "kept"},
                                           {BakeOutcome::baked, "baked"},
                                           {BakeOutcome::failed, "failed"}}};
 
-/// A failure of the task is what kept the batch as a whole from being baked.
+/// `failure` is an error of the whole batch; those of single recordings are in the items.
 struct BakeReport : TaskReport {
   static constexpr const char* kName = "baking";
   static constexpr const char* kPrefix = "batch";
@@ -29,21 +29,21 @@ struct BakeReport : TaskReport {
     BakeOutcome outcome = BakeOutcome::waiting;
     std::string failure = {};
   };
-  std::vector<Item> items;  ///< known once it is planned
+  std::vector<Item> items;  ///< filled when the batch is planned
 
   [[nodiscard]] std::size_t count(BakeOutcome outcome) const;
   [[nodiscard]] std::size_t failed() const { return count(BakeOutcome::failed); }
-  /// What it has come to, in words.
+  /// Summary of the outcomes: "3 baked, 1 kept".
   [[nodiscard]] std::string text() const;
   [[nodiscard]] JobStatus status() const;
 };
 
 using BackgroundBake = Task<BakeReport>;
 
-/// Plans and bakes what the options describe. Throws InputError while another batch is running.
+/// Plans and bakes a batch. Throws InputError while another batch is running.
 void startBake(BackgroundBake& job, BakeOptions options);
-/// Bakes a single recording; one that is there is replaced. Throws InputError while another batch
-/// is running.
+/// Bakes a single recording, overwriting an existing file. Throws InputError while another batch is
+/// running.
 void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation,
                std::filesystem::path path);
 

@@ -15,7 +15,7 @@
 namespace broadmark {
 namespace {
 
-/// Keeps the report of a run up to date.
+/// Updates the report of a run.
 class Observer final : public RunObserver {
  public:
   Observer(BackgroundBenchmark& job, std::uint64_t steps)
@@ -24,18 +24,18 @@ class Observer final : public RunObserver {
   bool cancelled() override { return job_.cancelled(); }
 
   void onTaskStart(const std::string& task, std::uint64_t steps) override {
-    doing_ = task;
-    begun_ = next_;
-    next_ += steps;
+    task_ = task;
+    task_start_ = task_end_;
+    task_end_ += steps;
   }
 
   void onProgress(std::uint64_t done, const std::string& detail) override {
-    const double share = std::min(1.0, static_cast<double>(begun_ + done) / steps_);
+    const double fraction = std::min(1.0, static_cast<double>(task_start_ + done) / steps_);
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     job_.update([&](BenchmarkReport& report) {
-      report.doing = detail.empty() ? doing_ : fmt::format("{}: {}", doing_, detail);
-      report.fraction = static_cast<float>(share);
-      report.seconds_left = share > 0 ? seconds * (1 - share) / share : 0;
+      report.activity = detail.empty() ? task_ : fmt::format("{}: {}", task_, detail);
+      report.fraction = static_cast<float>(fraction);
+      report.seconds_left = fraction > 0 ? seconds * (1 - fraction) / fraction : 0;
     });
   }
 
@@ -51,7 +51,7 @@ class Observer final : public RunObserver {
 
   void onRecordingEnd(const PlanEntry& /*entry*/, IndexedFrames& /*recording*/, Oracle&) override {
     job_.update([](BenchmarkReport& report) {
-      for (BenchmarkReport::Item& item : report.items) item.kept = true;
+      for (BenchmarkReport::Item& item : report.items) item.saved = true;
     });
   }
 
@@ -61,9 +61,9 @@ class Observer final : public RunObserver {
   BackgroundBenchmark& job_;
   const double steps_;
   const Clock::time_point start_ = Clock::now();
-  std::string doing_;
-  std::uint64_t begun_ = 0;  ///< steps of the tasks before
-  std::uint64_t next_ = 0;   ///< steps of the tasks up to the present one
+  std::string task_;
+  std::uint64_t task_start_ = 0;  ///< steps before the current task
+  std::uint64_t task_end_ = 0;    ///< steps up to the end of the current task
 };
 
 }  // namespace
@@ -80,26 +80,26 @@ std::string BenchmarkReport::text() const {
 }
 
 JobStatus BenchmarkReport::status() const {
-  return {.doing = "Running algorithms: " + text() + ".",
+  return {.activity = "Running algorithms: " + text() + ".",
           .outcome = failure.empty() ? fmt::format("{}: {}", file.string(), text()) : "",
-          .faulty = failed() > 0,
+          .is_error = failed() > 0,
           .values = {{"cases", std::to_string(cases)},
                      {"run", std::to_string(items.size())},
                      {"failed", std::to_string(failed())}}};
 }
 
 void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
-                    const ExecutorFactory& make_host) {
+                    const ExecutorFactory& make_executor) {
   const std::filesystem::path file = request.outputs.at("json");
   requireOutput(file);
-  job.begin({.file = file},
-            [&job, request = std::move(request), algorithms = std::move(algorithms), make_host] {
-              job.update([](BenchmarkReport& report) { report.doing = "opening recordings"; });
-              Plan plan = makePlan(request, PlanUse::run, algorithms);
-              job.update([&](BenchmarkReport& report) { report.cases = caseIds(plan).size(); });
-              Observer observer(job, stepsOf(plan));
-              return runPlan(plan, make_host, observer).complete;
-            });
+  job.start({.file = file}, [&job, request = std::move(request), algorithms = std::move(algorithms),
+                             make_executor] {
+    job.update([](BenchmarkReport& report) { report.activity = "opening recordings"; });
+    Plan plan = makePlan(request, PlanUse::run, algorithms);
+    job.update([&](BenchmarkReport& report) { report.cases = caseIds(plan).size(); });
+    Observer observer(job, stepsOf(plan));
+    return runPlan(plan, make_executor, observer).complete;
+  });
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Running algorithms on recordings in the background, as a run without the inspector does.
+// Runs algorithms on recordings in the background, like a run without the inspector.
 #pragma once
 
 #include <filesystem>
@@ -13,35 +13,35 @@
 
 namespace broadmark {
 
-/// A failure of the task is what kept the plan as a whole from being run.
+/// `failure` is an error of the whole plan; those of single cases are in the items.
 struct BenchmarkReport : TaskReport {
   static constexpr const char* kName = "running algorithms";
   static constexpr const char* kPrefix = "benchmark";
 
-  /// A case that has been run.
+  /// A finished case.
   struct Item {
     std::string id;
-    std::string name;  ///< the same with the algorithm first
+    std::string name;  ///< the id with the algorithm first
     Status status = Status::ok;
-    std::string reason = {};    ///< for every status but ok
-    double median_seconds = 0;  ///< of a frame
-    bool kept = false;          ///< it is in the results file
+    std::string reason = {};    ///< set unless the status is ok
+    double median_seconds = 0;  ///< per frame
+    bool saved = false;         ///< written to the results file
   };
-  std::vector<Item> items;     ///< in the order in which they ended
-  std::size_t cases = 0;       ///< in all
-  std::filesystem::path file;  ///< the results
+  std::vector<Item> items;     ///< in order of completion
+  std::size_t cases = 0;       ///< total number of cases
+  std::filesystem::path file;  ///< the results file
 
   [[nodiscard]] std::size_t failed() const;
-  /// What it has come to, in words.
+  /// Summary of the results: "5 of 8 cases run".
   [[nodiscard]] std::string text() const;
   [[nodiscard]] JobStatus status() const;
 };
 
 using BackgroundBenchmark = Task<BenchmarkReport>;
 
-/// Begins a run with these algorithms to choose from, which run where `make_host` says; its results
-/// are rewritten as JSON after each recording. Throws InputError while another one is running.
+/// Starts a run with the available algorithms; rewrites its results as JSON after each recording.
+/// Throws InputError while another run is active.
 void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
-                    const ExecutorFactory& make_host);
+                    const ExecutorFactory& make_executor);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// A duel in the background.
+// Runs a duel in the background.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ struct DuelReport : TaskReport {
   static constexpr const char* kName = "duel";
   static constexpr const char* kPrefix = "duel";
 
-  DuelResult result;  ///< so far: without places until it is done
+  DuelResult result;  ///< so far; has no ranking until it is done
   double max_seconds = 0;
 
   [[nodiscard]] JobStatus status() const;
@@ -22,10 +22,10 @@ struct DuelReport : TaskReport {
 
 using BackgroundDuel = Task<DuelReport>;
 
-/// Begins; the cases run where `make_host` says. Throws InputError for fewer than two cases, for no
-/// frame, and while another one is running.
+/// Starts a duel. Throws InputError for fewer than two cases, without frames, and while another
+/// duel is running.
 void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
                std::unique_ptr<IndexedFrames> frames, double max_seconds,
-               const ExecutorFactory& make_host);
+               const ExecutorFactory& make_executor);
 
 }  // namespace broadmark

@@ -16,31 +16,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Debian's Python has the packages that the report needs; it comes before any other.
-constexpr const char* kDebiansPython = "/usr/bin/python3";
+/// Debian's Python, preferred because it has the packages that the report needs.
+constexpr const char* kDebianPython = "/usr/bin/python3";
 
 bool holdsPackage(const fs::path& folder) { return fs::exists(folder / "broadmark/__main__.py"); }
 
-std::vector<std::pair<std::string, std::string>> variables(const fs::path& program) {
+std::vector<std::pair<std::string, std::string>> pythonEnvironment(const fs::path& program) {
   std::vector<std::pair<std::string, std::string>> variables = {
       {"BROADMARK", program.string()},
-      {"PYTHONSAFEPATH", "1"}};  // nothing is imported from the current folder
+      {"PYTHONSAFEPATH", "1"}};  // no imports from the current folder
   const fs::path folder = packageFolder(program);
   if (folder.empty()) return variables;
-  const char* const others = std::getenv("PYTHONPATH");
-  variables.emplace_back("PYTHONPATH",
-                         folder.string() + (others == nullptr ? "" : fmt::format(":{}", others)));
+  const char* const inherited = std::getenv("PYTHONPATH");
+  variables.emplace_back(
+      "PYTHONPATH", folder.string() + (inherited == nullptr ? "" : fmt::format(":{}", inherited)));
   return variables;
 }
 
-/// Why there is no page, of what was printed.
-InputError refusal(const ProgramEnd& end) {
+/// The error, from the last line that the program printed.
+InputError failureOf(const ProgramEnd& end) {
   std::string last = end.printed;
   while (!last.empty() && last.back() == '\n') last.pop_back();
   last.erase(0, last.rfind('\n') + 1);
   if (last.find("No module named broadmark") != last.npos) {
     last =
-        "the Python package of Broadmark is not there: install it, or build with "
+        "the Python package of Broadmark was not found: install it, or build with "
         "BROADMARK_PYTHON=ON";
   }
   return InputError(fmt::format("no report page (status {}): {}", end.status, last));
@@ -65,21 +65,21 @@ fs::path packageFolder(const fs::path& program) {
 
 JobStatus PageReport::status() const {
   const bool done = state == TaskState::done;
-  return {.doing = "A report page is being written.",
+  return {.activity = "A report page is being written.",
           .outcome = done ? "report page: " + fs::absolute(page).string() : ""};
 }
 
 void startReport(BackgroundReport& job, const fs::path& results, const fs::path& page) {
   requireOutput(page);
-  PageReport first;
-  first.page = page;
-  job.begin(std::move(first), [&job, results, page] {
-    const bool debian = fs::exists(kDebiansPython);
+  PageReport initial;
+  initial.page = page;
+  job.start(std::move(initial), [&job, results, page] {
+    const bool debian = fs::exists(kDebianPython);
     const ProgramEnd end = runProgram(
-        {debian ? kDebiansPython : "python3", "-m", "broadmark", "report",
+        {debian ? kDebianPython : "python3", "-m", "broadmark", "report",
          fs::absolute(results).string(), "-o", fs::absolute(page).string()},
-        variables(fs::read_symlink("/proc/self/exe")), [&job] { return job.cancelled(); });
-    if (end.status != 0) throw refusal(end);
+        pythonEnvironment(fs::read_symlink("/proc/self/exe")), [&job] { return job.cancelled(); });
+    if (end.status != 0) throw failureOf(end);
     return true;
   });
 }

@@ -1,4 +1,4 @@
-// The report page of results, written in the background by the Python package.
+// Writes the report page of results in the background, by the Python package.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-/// Where Python is to look for the package of this program: beside the source it was built from,
-/// or where it is installed; "": Python knows by itself, or it is not there.
+/// Returns the folder with this program's Python package, in its source tree or installation; "" if
+/// there is none, or Python finds it by itself.
 std::filesystem::path packageFolder(const std::filesystem::path& program);
 
 struct PageReport : TaskReport {
@@ -22,7 +22,7 @@ struct PageReport : TaskReport {
 
 using BackgroundReport = Task<PageReport>;
 
-/// Begins. Throws InputError where nothing can be written, and while another one is written.
+/// Starts to write the page. Throws InputError if it cannot, or while another page is written.
 void startReport(BackgroundReport& job, const std::filesystem::path& results,
                  const std::filesystem::path& page);
 

@@ -6,23 +6,24 @@ namespace broadmark {
 
 namespace {
 
-/// Returns whether it was written: not when cancelled.
-bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifference& known,
-                    const ExecutorFactory& make_host) {
-  const ExportReport begun = job.report();
-  const auto note = [&job](const ShrinkProgress& now) {
-    job.update([&](ExportReport& report) { report.now = now; });
+/// Returns false if cancelled.
+bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifference& difference,
+                    const ExecutorFactory& make_executor) {
+  const ExportReport initial = job.report();
+  const auto on_progress = [&job](const ShrinkProgress& progress) {
+    job.update([&](ExportReport& report) { report.progress = progress; });
   };
-  const ShrunkCase shrunk = shrinkCase(
-      begun.test_case, source, known,
-      {.progress = note, .cancelled = [&job] { return job.cancelled(); }, .make_host = make_host});
+  const ShrunkCase shrunk = shrinkCase(initial.test_case, source, difference,
+                                       {.progress = on_progress,
+                                        .cancelled = [&job] { return job.cancelled(); },
+                                        .make_executor = make_executor});
   if (!shrunk.minimal) return false;
-  writePart(begun.file, source, shrunk.part);
-  note({.trials = shrunk.trials,
-        .bodies = shrunk.part.bodies.size(),
-        .frames = shrunk.part.frames.size() - 1});
+  writeSelection(initial.file, source, shrunk.part);
+  on_progress({.trials = shrunk.trials,
+               .bodies = shrunk.part.bodies.size(),
+               .frames = shrunk.part.frames.size() - 1});
   job.update([&](ExportReport& report) {
-    report.command = reproducingCommand(begun.test_case, begun.file);
+    report.command = reproducingCommand(initial.test_case, initial.file);
   });
   return true;
 }
@@ -30,26 +31,26 @@ bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifferenc
 }  // namespace
 
 JobStatus ExportReport::status() const {
-  return {.doing = "A case is being exported.",
+  return {.activity = "A case is being exported.",
           .outcome = state == TaskState::done ? "exported: " + file.string() : "",
-          .values = {{"trials", std::to_string(now.trials)},
-                     {"bodies", std::to_string(now.bodies)},
-                     {"frames", std::to_string(now.frames)},
+          .values = {{"trials", std::to_string(progress.trials)},
+                     {"bodies", std::to_string(progress.bodies)},
+                     {"frames", std::to_string(progress.frames)},
                      {"file", file.string()},
                      {"command", command}}};
 }
 
 void startExport(CaseExport& job, const Case& test_case, std::unique_ptr<IndexedFrames> source,
-                 FrameDifference known, std::filesystem::path file,
-                 const ExecutorFactory& make_host) {
-  ExportReport first;
-  first.test_case = test_case;
-  first.file = std::move(file);
-  first.whole_bodies = first.now.bodies = source->scene().objects;
-  first.whole_frames = first.now.frames = known.frame;
-  job.begin(std::move(first),
-            [&job, source = std::move(source), known = std::move(known), make_host] {
-              return shrinkAndWrite(job, *source, known, make_host);
+                 FrameDifference difference, std::filesystem::path file,
+                 const ExecutorFactory& make_executor) {
+  ExportReport initial;
+  initial.test_case = test_case;
+  initial.file = std::move(file);
+  initial.original_bodies = initial.progress.bodies = source->scene().objects;
+  initial.original_frames = initial.progress.frames = difference.frame;
+  job.start(std::move(initial),
+            [&job, source = std::move(source), difference = std::move(difference), make_executor] {
+              return shrinkAndWrite(job, *source, difference, make_executor);
             });
 }
 

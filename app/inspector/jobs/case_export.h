@@ -1,5 +1,4 @@
-// Exporting a failing case in the background: shrinks it to the smallest recording, and writes
-// that.
+// Exports a failing case in the background: shrinks its recording, and writes the smallest one.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +20,20 @@ struct ExportReport : TaskReport {
 
   Case test_case;
   std::filesystem::path file;
-  std::size_t whole_bodies = 0;
-  std::size_t whole_frames = 0;  ///< up to the wrong one
-  ShrinkProgress now;
-  std::string command;  ///< once done: what shows the fault, for a shell
+  std::size_t original_bodies = 0;
+  std::size_t original_frames = 0;  ///< up to the wrong frame
+  ShrinkProgress progress;
+  std::string command;  ///< once done: shell command that reproduces the fault
 
   [[nodiscard]] JobStatus status() const;
 };
 
 using CaseExport = Task<ExportReport>;
 
-/// Starts an export: `test_case` answers wrongly on `source`, as `known` says. No other thread may
-/// use `source`. Throws InputError while another export is running.
+/// Starts an export. `difference` is the wrong answer of `test_case` on `source`, which no other
+/// thread may use. Throws InputError while another export is running.
 void startExport(CaseExport& job, const Case& test_case, std::unique_ptr<IndexedFrames> source,
-                 FrameDifference known, std::filesystem::path file,
-                 const ExecutorFactory& make_host = makeLocalHost);
+                 FrameDifference difference, std::filesystem::path file,
+                 const ExecutorFactory& make_executor = makeInProcessExecutor);
 
 }  // namespace broadmark

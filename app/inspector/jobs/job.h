@@ -1,4 +1,4 @@
-// Work in the background: what all its kinds have in common, and the thread it runs on.
+// Background work: the common interface, and the thread that runs it.
 #pragma once
 
 #include <atomic>
@@ -22,29 +22,29 @@ inline constexpr NameTable kTaskStates{{NamedValue{TaskState::idle, "idle"},
                                         {TaskState::cancelled, "cancelled"},
                                         {TaskState::failed, "failed"}}};
 
-/// Part of every report.
+/// Base of all reports.
 struct TaskReport {
   TaskState state = TaskState::idle;
-  std::string failure = {};  ///< of a failed one
-  // Of work that knows how far it is:
-  float fraction = 0;       ///< of the work
-  double seconds_left = 0;  ///< 0: not known
-  std::string doing = {};   ///< at present, in words
+  std::string failure = {};  ///< error text, if failed
+  // Progress, if the work measures it:
+  float fraction = 0;         ///< completed fraction
+  double seconds_left = 0;    ///< 0: unknown
+  std::string activity = {};  ///< description of the current step
 };
 
-/// State as text, by name.
+/// State by name, as text.
 using Values = std::map<std::string, std::string>;
 
-/// What every kind of job states about itself.
+/// The state of a job of any kind.
 struct JobStatus {
-  std::string doing;         ///< while it is running, as a sentence
-  std::string outcome = {};  ///< once it has ended, for the status bar; "": nothing
-  bool faulty = false;       ///< the outcome is an error
+  std::string activity;      ///< sentence for a running job
+  std::string outcome = {};  ///< status bar text of a finished job; "": none
+  bool is_error = false;     ///< the outcome is an error
   Values values = {};        ///< for scripts and tests
-  std::string failure = {};  ///< of a failed one
+  std::string failure = {};  ///< error text, if failed
 };
 
-/// Work in the background, one piece at a time.
+/// Background work of one kind; one task runs at a time.
 class Job {
  public:
   explicit Job(std::string prefix) : value_prefix(std::move(prefix)) {}
@@ -54,24 +54,24 @@ class Job {
 
   [[nodiscard]] virtual JobStatus status() const = 0;
   [[nodiscard]] virtual bool running() const = 0;
-  /// Ends the work soon; what is finished is kept.
+  /// Requests cancellation; finished parts are kept.
   virtual void cancel() = 0;
-  /// Whether it has ended since this was last asked.
-  virtual bool takeEnd() = 0;
+  /// Returns whether the work has finished since the last call.
+  virtual bool consumeFinished() = 0;
 
-  const std::string value_prefix;  ///< of its values' names: "batch"
+  const std::string value_prefix;  ///< prefix of the value names: "batch"
 };
 
-/// A job that reports its progress. `Report` is derived from TaskReport and states kName, which
-/// stands for the work in messages ("baking"), kPrefix and
-/// `JobStatus status() const`: all but the failure; of the values not the state.
+/// A job that reports its progress. `Report` is derived from TaskReport and defines kName (the
+/// work's name in messages: "baking"), kPrefix, and `JobStatus status() const` without the failure
+/// and without the value "state".
 template <class R>
 class Task final : public Job {
  public:
   using Report = R;
 
   Task() : Job(Report::kPrefix) {}
-  /// Cancels the work, and waits for its end.
+  /// Cancels the work, and joins the thread.
   ~Task() override {
     cancel();
     wait();
@@ -94,26 +94,25 @@ class Task final : public Job {
     status.values["state"] = kTaskStates.nameOf(now.state);
     return status;
   }
-  bool takeEnd() override { return ended_.exchange(false); }
-  /// Returns when the work has ended.
+  bool consumeFinished() override { return finished_.exchange(false); }
+  /// Waits until the work has finished.
   void wait() {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Begins with the report `first`. `work()` asks cancelled() now and then, and returns whether it
-  /// was completed; what it throws becomes the failure. Throws InputError while earlier work is
-  /// running.
+  /// Starts `work()` with the report `initial`. `work` polls cancelled(), and returns whether it
+  /// completed; its exceptions become the failure. Throws InputError while earlier work is running.
   template <class Work>
-  void begin(Report first, Work work) {
+  void start(Report initial, Work work) {
     if (running()) {
       throw InputError(std::string(Report::kName) +
-                       ": still running: wait for its end, or cancel it");
+                       ": still running: wait until it finishes, or cancel it");
     }
     wait();
     cancelled_ = false;
-    ended_ = false;
-    first.state = TaskState::running;
-    update([&](Report& report) { report = std::move(first); });
+    finished_ = false;
+    initial.state = TaskState::running;
+    update([&](Report& report) { report = std::move(initial); });
     thread_ = std::thread([this, work = std::move(work)]() mutable { perform(work); });
   }
   /// Changes the report under its lock.
@@ -140,12 +139,12 @@ class Task final : public Job {
     update([&](Report& report) {
       report.state = end;
       report.failure = std::move(failure);
-      ended_ = true;
+      finished_ = true;
     });
   }
 
   std::atomic<bool> cancelled_ = false;
-  std::atomic<bool> ended_ = false;
+  std::atomic<bool> finished_ = false;
   mutable std::mutex mutex_;
   Report report_;  ///< guarded by mutex_
   std::thread thread_;

@@ -1,4 +1,4 @@
-// All work in the background.
+// All background jobs.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace broadmark {
 
-/// One job of each kind; a new kind is a file, and a line in `jobs_`.
+/// One job of each kind. To add a kind, add a file and an element of `jobs_`.
 class Jobs {
  public:
-  explicit Jobs(ExecutorFactory host_maker) : make_host(std::move(host_maker)) {}
+  explicit Jobs(ExecutorFactory executor_factory) : make_executor(std::move(executor_factory)) {}
 
   template <class JobType>
   [[nodiscard]] JobType& get() {
@@ -26,7 +26,7 @@ class Jobs {
   [[nodiscard]] const std::vector<Job*>& all() const { return all_; }
   [[nodiscard]] bool running() const { return std::ranges::any_of(all_, &Job::running); }
 
-  const ExecutorFactory make_host;  ///< where algorithms run
+  const ExecutorFactory make_executor;  ///< creates the executors that run algorithms
 
  private:
   std::tuple<BackgroundBake,       //

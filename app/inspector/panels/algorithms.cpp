@@ -1,4 +1,4 @@
-// Choosing algorithms, and how each is run.
+// Selection and configuration of the algorithms.
 
 #include <fmt/format.h>
 
@@ -9,13 +9,14 @@
 
 #include "inspector/panels/panel.h"
 
-#include <imgui_stdlib.h>  // after imgui.h, which it lacks
+#include <imgui_stdlib.h>  // requires imgui.h
 
 namespace broadmark::panels::algorithms {
 namespace {
 
-constexpr float kListWidth = 260;   // units, of the list of algorithms to add
-constexpr float kListHeight = 360;  // units, of that list
+// The list of algorithms to add, in units.
+constexpr float kListWidth = 260;
+constexpr float kListHeight = 360;
 
 /// A family's algorithms, to choose from.
 struct Family {
@@ -40,16 +41,15 @@ class AlgorithmsPanel final : public Panel {
   using Panel::Panel;
 
   void draw() override {
-    if (wideButton("Add…##add", "Adds an algorithm")) ImGui::OpenPopup("add");
+    if (wideButton("Add…##add", "Add an algorithm")) ImGui::OpenPopup("add");
     drawChoice();
     ui.checkbox("check every answer", session.mismatches.check,
-                "Compares every answer with the oracle's, outside the timed region");
+                "Compare every answer with the oracle's, outside the timed region");
     ui.checkbox("stop at a mismatch", session.mismatches.stop_at_mismatch,
-                "Stays at the first frame in which an algorithm is wrong",
-                session.mismatches.check);
+                "Stop at the first frame in which an algorithm is wrong", session.mismatches.check);
     if (session.tracks.list.empty()) {
       ImGui::Spacing();
-      ui.paragraph("No algorithm is chosen: overlaps are the oracle's.");
+      ui.paragraph("No algorithm is chosen: the overlaps are the oracle's.");
     }
     int removed = 0;
     for (TrackEdit& track : session.tracks.list) {
@@ -59,21 +59,20 @@ class AlgorithmsPanel final : public Panel {
   }
 
  private:
-  /// A click takes one; with Ctrl several are marked, and then added at once.
+  /// A click adds an algorithm; Ctrl+click marks several, which a button adds at once.
   void drawChoice() {
     if (!ImGui::BeginPopup("add")) return;
     const auto scope = ui.scope("add");
     if (ImGui::IsWindowAppearing()) {
-      searched_.clear();
+      search_.clear();
       marked_.clear();
       ImGui::SetKeyboardFocusHere();
     }
     ImGui::SetNextItemWidth(kListWidth * ui.scale);
-    ImGui::InputTextWithHint("##search", "search", &searched_);
+    ImGui::InputTextWithHint("##search", "search", &search_);
     ui.note("search");
-    const bool add =
-        ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
-                  "Adds those that were marked by a click with Ctrl", 0, !marked_.empty());
+    const bool add = ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
+                               "Add the algorithms marked by Ctrl+click", 0, !marked_.empty());
     std::vector<std::string> chosen;
     if (add) chosen = marked_;
     ImGui::BeginChild("list", {kListWidth * ui.scale, kListHeight * ui.scale}, false,
@@ -88,11 +87,11 @@ class AlgorithmsPanel final : public Panel {
   }
 
   void drawFamily(const Family& family, std::vector<std::string>& chosen) {
-    bool headed = false;
+    bool has_heading = false;
     for (const Algorithm* algorithm : family.members) {
       const std::string& id = algorithm->id;
-      if (id.find(searched_) == id.npos && family.name.find(searched_) == id.npos) continue;
-      if (!std::exchange(headed, true)) ui.faint(family.name);
+      if (id.find(search_) == id.npos && family.name.find(search_) == id.npos) continue;
+      if (!std::exchange(has_heading, true)) ui.faint(family.name);
       const auto mark = std::ranges::find(marked_, id);
       const bool pressed = ImGui::Selectable(id.c_str(), mark != marked_.end(),
                                              ImGuiSelectableFlags_DontClosePopups);
@@ -109,7 +108,7 @@ class AlgorithmsPanel final : public Panel {
     }
   }
 
-  /// Returns whether it is to be kept.
+  /// Returns whether to keep the track.
   bool drawTrack(TrackEdit& track) {
     const std::string& id = track.test_case.algorithm.id;
     const auto scope = ui.scope(id);
@@ -121,12 +120,12 @@ class AlgorithmsPanel final : public Panel {
     if (open) {
       bool changed = false;
       bool shown = session.tracks.shown() == track.number;
-      if (ui.checkbox("show its answer", shown, "The view shows what this algorithm reports")) {
+      if (ui.checkbox("show its answer", shown, "Show this algorithm's answer in the view")) {
         session.tracks.show(shown ? track.number : 0);
       }
       changed |= drawExecution(track.test_case);
       changed |= ui.parameters(*track.parameters);
-      if (changed) session.tracks.changed();
+      if (changed) session.tracks.applyEdits();
       if (ui.button("Remove")) keep = false;
     }
     ImGui::PopID();
@@ -140,14 +139,14 @@ class AlgorithmsPanel final : public Panel {
       std::vector<std::string> names;
       for (const Isa isa : isas) names.emplace_back(isaName(isa));
       auto chosen = static_cast<std::size_t>(std::ranges::find(isas, test_case.isa) - isas.begin());
-      if (ui.combo("isa", chosen, names, "Instruction set of its kernels")) {
+      if (ui.combo("isa", chosen, names, "Instruction set of the algorithm's kernels")) {
         test_case.isa = isas[chosen];
         changed = true;
       }
     }
     if (test_case.algorithm.traits.parallel) {
       std::int64_t threads = test_case.threads;
-      if (ui.integer("threads", threads, 1, 256, "Threads that share the work")) {
+      if (ui.integer("threads", threads, 1, 256, "Number of threads")) {
         test_case.threads = static_cast<int>(threads);
         changed = true;
       }
@@ -155,14 +154,13 @@ class AlgorithmsPanel final : public Panel {
     return changed;
   }
 
-  std::string searched_;             ///< part of an id or a family's name
+  std::string search_;               ///< part of an id or family name
   std::vector<std::string> marked_;  ///< ids
 };
 
 }  // namespace
 
-extern const PanelKind kind = {"Algorithms", DockArea::left,
-                               "Which algorithms run, and with which parameters",
+extern const PanelSpec spec = {"Algorithms", DockArea::left, "Choose and configure algorithms",
                                make<AlgorithmsPanel>};
 
 }  // namespace broadmark::panels::algorithms

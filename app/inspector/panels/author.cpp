@@ -1,4 +1,4 @@
-// Putting a scene together: its file, brushes, the selected bodies, how it is simulated.
+// Authoring of a scene: file, brushes, selected bodies, simulation parameters.
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@ using scenes::AuthoredBody;
 using scenes::SceneEditor;
 using Numbers = std::array<double, 3>;
 
-constexpr double kFar = 1e9;
-constexpr double kFast = 1e6;
+constexpr double kMaxCoordinate = 1e9;
+constexpr double kMaxVelocity = 1e6;
 
 template <class Vector>
 Numbers numbers(const Vector& v) {
@@ -27,20 +27,20 @@ Vec3 vec(const Numbers& n) {
   return {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
 }
 
-/// The text of the inputs until it is entered.
+/// Values of the inputs until they are committed.
 struct Inputs {
   std::string name;
   Numbers world_min{};
   Numbers world_max{};
   scenes::AuthoredParameters parameters;
-  scenes::AuthoredBody body;  ///< the first selected one
+  scenes::AuthoredBody body;  ///< the first selected body
   Numbers size{};
   Numbers velocity{};
   Numbers spin{};
   double layer = 0;
   double appears = 0;
   double vanishes = 0;   ///< 0: never
-  bool grouped = false;  ///< any of them
+  bool grouped = false;  ///< any selected body
 };
 
 class AuthorPanel final : public Panel {
@@ -58,12 +58,11 @@ class AuthorPanel final : public Panel {
   }
 
  private:
-  /// Changes the document if a button was `pressed` or a value entered. What is refused does not
-  /// stay in the inputs.
-  void edit(bool pressed, const std::function<void(SceneEditor&)>& change) {
-    if (!pressed) return;
+  /// Changes the document if `requested`; reloads the inputs to discard rejected values.
+  void edit(bool requested, const std::function<void(SceneEditor&)>& change) {
+    if (!requested) return;
     document_.edit(change);
-    known_ = false;
+    loaded_ = false;
   }
 
   template <class Value>
@@ -71,13 +70,13 @@ class AuthorPanel final : public Panel {
     edit(entered, [&](SceneEditor& editor) { editor.set(verb, property, value); });
   }
 
-  /// Takes over what the document says, if that has changed.
+  /// Loads the inputs from the document if it has changed.
   void reload() {
     const SceneEditor& editor = document_.editor;
-    const bool same = known_ && revision_ == editor.revision() && name_ == document_.title() &&
-                      selection_ == editor.selection();
-    if (same) return;
-    known_ = true;
+    const bool current = loaded_ && revision_ == editor.revision() && name_ == document_.title() &&
+                         selection_ == editor.selection();
+    if (current) return;
+    loaded_ = true;
     revision_ = editor.revision();
     name_ = document_.title();
     selection_ = editor.selection();
@@ -101,17 +100,17 @@ class AuthorPanel final : public Panel {
 
   void drawFile() {
     ButtonRow first(ui, 2);
-    if (first.button("New", "An empty scene")) {
-      document_.leave([this] { document_.start({}); });
+    if (first.button("New", "Start an empty scene")) {
+      document_.closeThen([this] { document_.load({}); });
     }
-    if (first.button("From this frame", "Makes a scene of the frame that is shown",
+    if (first.button("From this frame", "Make a scene of the shown frame",
                      session.playback.source() && !document_.atRest())) {
-      document_.leave([this] { document_.startFromFrame(); });
+      document_.closeThen([this] { document_.loadCurrentFrame(); });
     }
     ButtonRow second(ui, 3);
-    if (second.button("Open…", "Opens a scene (.json)")) askOpenScene(files, session);
-    if (second.button("Save", "Saves the scene (Ctrl+S)")) saveScene(files, session);
-    if (second.button("Save as…", "Saves the scene in another file")) {
+    if (second.button("Open…", "Open a scene (.json)")) askOpenScene(files, session);
+    if (second.button("Save", "Save the scene (Ctrl+S)")) saveScene(files, session);
+    if (second.button("Save as…", "Save the scene to another file")) {
       askSaveScene(files, session);
     }
     const SceneEditor& editor = document_.editor;
@@ -125,7 +124,7 @@ class AuthorPanel final : public Panel {
          &SceneEditor::redo);
     ButtonRow fourth(ui, 2);
     const bool bodies = !editor.scene().bodies.empty();
-    if (fourth.button("Simulate", "Moves the scene on, frame by frame as it is watched (Space)",
+    if (fourth.button("Simulate", "Simulate the scene, frame by frame as it is shown (Space)",
                       bodies)) {
       document_.simulate();
       session.play(true);
@@ -134,8 +133,8 @@ class AuthorPanel final : public Panel {
     if (bake.running()) {
       const std::string label =
           fmt::format("Cancel ({:.0f} %)###Cancel", 100 * bake.report().fraction);
-      if (fourth.button(label.c_str(), "Leaves no recording behind")) bake.cancel();
-    } else if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
+      if (fourth.button(label.c_str(), "Stop; no recording is written")) bake.cancel();
+    } else if (fourth.button("Bake…", "Write all frames to a recording, in the background",
                              bodies)) {
       askBakeScene(files, session);
     }
@@ -143,11 +142,11 @@ class AuthorPanel final : public Panel {
 
   void drawState() {
     ImGui::Spacing();
-    ui.fact("scene", document_.title() + (document_.isModified() ? " *" : ""));
-    ui.fact("bodies", fmt::format("{}, {} selected", document_.editor.scene().bodies.size(),
-                                  document_.editor.selection().size()));
+    ui.valueRow("scene", document_.title() + (document_.isModified() ? " *" : ""));
+    ui.valueRow("bodies", fmt::format("{}, {} selected", document_.editor.scene().bodies.size(),
+                                      document_.editor.selection().size()));
     if (wideButton(document_.shown() ? "Back to the start###show" : "Show the scene###show",
-                   "Shows the bodies where they start", !document_.atRest())) {
+                   "Show the bodies at their initial positions", !document_.atRest())) {
       document_.show();
     }
   }
@@ -164,10 +163,10 @@ class AuthorPanel final : public Panel {
     }
     ui.parameters(document_.brush());
     Numbers at = numbers(document_.paint_at);
-    ui.vector("at", at, -kFar, kFar, "The point that is painted at, in world units");
+    ui.vector("at", at, -kMaxCoordinate, kMaxCoordinate, "Point to paint at, in world units");
     document_.paint_at = vec(at);
     ui.parameters(document_.paint);
-    if (wideButton("Add", "Paints once, and selects what was added")) {
+    if (wideButton("Add", "Paint once, and select the added bodies")) {
       document_.add([this] { return document_.stroke(); });
     }
     ImGui::PopID();
@@ -179,10 +178,10 @@ class AuthorPanel final : public Panel {
     ImGui::PushID("selection");
     const bool any = !selection_.empty();
     ButtonRow choose(ui, 2);
-    edit(choose.button("All", "Selects all bodies (Ctrl+A)"), &SceneEditor::selectAll);
-    edit(choose.button("None", "Selects nothing (Escape)", any), &SceneEditor::selectNone);
+    edit(choose.button("All", "Select all bodies (Ctrl+A)"), &SceneEditor::selectAll);
+    edit(choose.button("None", "Deselect all bodies (Escape)", any), &SceneEditor::selectNone);
     if (any) {
-      drawPlaces();
+      drawTransforms();
       drawProperties();
     } else {
       ui.faintParagraph(
@@ -191,33 +190,36 @@ class AuthorPanel final : public Panel {
     ImGui::PopID();
   }
 
-  void drawPlaces() {
-    ui.vector("by", by_, -kFar, kFar, "How far Move and Duplicate go, in world units");
-    ui.number("factor", factor_, 1e-6, 1e6, "Of Scale: on sizes and distances to the centre");
+  void drawTransforms() {
+    ui.vector("by", by_, -kMaxCoordinate, kMaxCoordinate,
+              "Offset for Move and Duplicate, in world units");
+    ui.number("factor", factor_, 1e-6, 1e6,
+              "Factor for Scale: of sizes and of distances from the centre");
     ButtonRow row(ui, 2);
-    edit(row.button("Move", "Moves the selected bodies"),
+    edit(row.button("Move", "Move the selected bodies"),
          [&](SceneEditor& editor) { editor.move(vec(by_)); });
-    edit(row.button("Scale", "Scales places and sizes about the common centre"),
+    edit(row.button("Scale", "Scale positions and sizes about the common centre"),
          [&](SceneEditor& editor) { editor.scale(static_cast<float>(factor_)); });
-    edit(row.button("Duplicate", "Copies the selected bodies, moved"),
+    edit(row.button("Duplicate", "Copy the selected bodies, with an offset"),
          [&](SceneEditor& editor) { editor.duplicate(vec(by_)); });
-    edit(row.button("Delete", "Deletes the selected bodies (Delete)"), &SceneEditor::erase);
+    edit(row.button("Delete", "Delete the selected bodies (Delete)"), &SceneEditor::erase);
     const bool several = selection_.size() > 1;
-    edit(row.button("Group", "A click on one selects all of them, with Alt only the one (Ctrl+G)",
+    edit(row.button("Group", "Let a click select the whole group, Alt+click a single body (Ctrl+G)",
                     several),
          &SceneEditor::group);
-    edit(row.button("Ungroup", "Each is selected for itself (Ctrl+Shift+G)", inputs_.grouped),
+    edit(row.button("Ungroup", "Let a click select a single body again (Ctrl+Shift+G)",
+                    inputs_.grouped),
          &SceneEditor::ungroup);
-    if (row.button("Fly there", "Looks at the selected bodies (F)")) {
-      session.selection.flyThere();
+    if (row.button("Fly there", "Move the camera to the selected bodies (F)")) {
+      session.selection.flyToSelection();
     }
-    if (row.button("Paint here", "The brush paints at the centre of the selection")) {
+    if (row.button("Paint here", "Set the brush's point to the centre of the selection")) {
       document_.paint_at = document_.editor.selectionCentre();
     }
     if (several) drawAlignments();
   }
 
-  /// A row for each axis.
+  /// Draws a row of buttons for each axis.
   void drawAlignments() {
     using Alignment = SceneEditor::Alignment;
     constexpr std::pair<Alignment, const char*> kAlignments[] = {
@@ -227,7 +229,7 @@ class AuthorPanel final : public Panel {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const auto& [alignment, name] : kAlignments) {
         const std::string label = fmt::format("{} {}", "xyz"[axis], name);
-        edit(row.button(label.c_str(), "Lines the selected bodies up, by their tight boxes"),
+        edit(row.button(label.c_str(), "Align the selected bodies by their tight boxes"),
              [&, to = alignment](SceneEditor& editor) { editor.align(axis, to); });
       }
     }
@@ -242,25 +244,27 @@ class AuthorPanel final : public Panel {
     edit(ui.combo("shape", shape, {"box", "sphere"}),
          [&](SceneEditor& editor) { shape == 1 ? editor.makeSpheres() : editor.makeBoxes(); });
     edit(ui.vector("size", inputs_.size, scenes::kMinEdge, scenes::kMaxEdge,
-                   "Edges, in world units; of a sphere the first is the diameter"),
+                   "Edge lengths in world units; for a sphere the first is the diameter"),
          [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
     set(ui.number("mass", inputs_.body.mass, 1e-6, 1e9), "set the mass of", &AuthoredBody::mass,
         inputs_.body.mass);
-    set(ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
+    set(ui.checkbox("frozen", inputs_.body.frozen, "Make the bodies immovable obstacles"),
         inputs_.body.frozen ? "freeze" : "unfreeze", &AuthoredBody::frozen, inputs_.body.frozen);
-    set(ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
+    set(ui.vector("velocity", inputs_.velocity, -kMaxVelocity, kMaxVelocity,
+                  "World units per second"),
         "set the velocity of", &AuthoredBody::linear_velocity, vec(inputs_.velocity));
-    set(ui.vector("spin", inputs_.spin, -kFast, kFast,
+    set(ui.vector("spin", inputs_.spin, -kMaxVelocity, kMaxVelocity,
                   "Angular velocity about each axis, in radians per second"),
         "set the spin of", &AuthoredBody::angular_velocity, vec(inputs_.spin));
     set(ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
-                  "Which layers collide is in the scene's file"),
+                  "Collision layer; the scene's file says which layers collide"),
         "set the layer of", &AuthoredBody::layer, static_cast<std::uint8_t>(inputs_.layer));
-    set(ui.number("appears", inputs_.appears, 0, kMaxFrames, "The first frame that it is in"),
+    set(ui.number("appears", inputs_.appears, 0, kMaxFrames,
+                  "First frame in which the body is present"),
         "set the first frame of", &AuthoredBody::appears,
         static_cast<std::uint32_t>(inputs_.appears));
     const bool vanishes = ui.number("vanishes", inputs_.vanishes, 0, kMaxFrames,
-                                    "The first frame after that which it is not in; 0: it stays");
+                                    "First later frame in which the body is absent; 0: never");
     const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
     set(vanishes, "set the last frame of", &AuthoredBody::vanishes,
         frame == 0 ? scenes::kNever : frame);
@@ -284,8 +288,10 @@ class AuthorPanel final : public Panel {
     const auto scope = ui.scope("Whole scene");
     ImGui::PushID("scene");
     edit(ui.text("name", inputs_.name), [&](SceneEditor& editor) { editor.setName(inputs_.name); });
-    const bool low = ui.vector("world min", inputs_.world_min, -kFar, kFar, "Walls stand there");
-    const bool high = ui.vector("world max", inputs_.world_max, -kFar, kFar, "Walls stand there");
+    const bool low = ui.vector("world min", inputs_.world_min, -kMaxCoordinate, kMaxCoordinate,
+                               "Lower corner of the walls");
+    const bool high = ui.vector("world max", inputs_.world_max, -kMaxCoordinate, kMaxCoordinate,
+                                "Upper corner of the walls");
     edit(low || high, [&](SceneEditor& editor) {
       const Vec3 min = vec(inputs_.world_min);
       const Vec3 max = vec(inputs_.world_max);
@@ -294,7 +300,7 @@ class AuthorPanel final : public Panel {
     edit(ui.parameters(inputs_.parameters), [&](SceneEditor& editor) {
       scenes::AuthoredParameters before(editor.scene().parameters);
       ParameterValues changed = changedValues(inputs_.parameters.values(), before);
-      // Another engine comes with parameters of its own, which keep their defaults.
+      // The parameters of another engine get their defaults.
       if (const auto engine = changed.find("engine"); engine != changed.end()) changed = {*engine};
       editor.setParameters(changed);
     });
@@ -302,7 +308,7 @@ class AuthorPanel final : public Panel {
   }
 
   Document& document_ = session.document;
-  bool known_ = false;  ///< whether the inputs are those of:
+  bool loaded_ = false;  ///< the inputs, from this state of the document:
   std::uint64_t revision_ = 0;
   std::string name_;
   scenes::BodyIds selection_;
@@ -313,7 +319,7 @@ class AuthorPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Author", DockArea::left, "Putting a scene together, body by body",
+extern const PanelSpec spec = {"Author", DockArea::left, "Build a scene, body by body",
                                make<AuthorPanel>};
 
 }  // namespace broadmark::panels::author

@@ -1,4 +1,4 @@
-// The part of the panel Batch that bakes recordings: scenes × object types × object counts.
+// The form of the panel Batch that bakes recordings: scenes × object types × object counts.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 #include "bake/bake_plan.h"
 #include "broadmark/error.h"
-#include "inspector/panels/batch_parts.h"
+#include "inspector/panels/batch_form.h"
 #include "inspector/session/text_lists.h"
 
 namespace broadmark {
@@ -32,11 +32,11 @@ class BakeForm : BatchForm {
     BackgroundBake& bake = session.jobs.get<BackgroundBake>();
     const BakeReport report = bake.report();
     const bool running = bake.running();
-    if (drawStart(bake, "Bakes in the background; what is there already is kept",
-                  "Keeps what is finished")) {
+    if (drawStart(bake, "Bake in the background; existing recordings are kept",
+                  "Stop; finished recordings are kept")) {
       update();
-      begun_ = session.notices.attempt([&] {
-        if (!preview_.fault.empty()) throw InputError(preview_.fault);
+      started_ = session.notices.catchErrors([&] {
+        if (!preview_.error.empty()) throw InputError(preview_.error);
         startBake(bake, options_);
       });
     }
@@ -44,21 +44,21 @@ class BakeForm : BatchForm {
     drawOptions();
     ImGui::EndDisabled();
     if (stale_) update();
-    // What has just been baked is listed as that.
-    const bool listed = begun_ && report.state == TaskState::done;
+    // The items of a bake that has just finished replace the preview.
+    const bool listed = started_ && report.state == TaskState::done;
     if (report.state != TaskState::idle) drawItems(report);
     if (!running && !listed) drawPreview();
   }
 
  private:
-  /// What the inputs come to.
+  /// The recordings that the inputs would bake.
   struct Preview {
     std::vector<std::pair<std::filesystem::path, std::uint64_t>> recordings;
     std::uint64_t bytes = 0;
-    std::string fault;  ///< "": none
+    std::string error;  ///< in the inputs; "": none
   };
 
-  /// The choices of a parameter of built-in scenes.
+  /// Returns the options of a choice parameter of built-in scenes.
   static std::vector<std::string> optionsOf(std::string_view parameter) {
     std::vector<std::string> options;
     makeSimulation("freefall")->visitParameters([&](const Parameter& p) {
@@ -69,9 +69,9 @@ class BakeForm : BatchForm {
     return options;
   }
 
-  /// A checkbox for each of `all`; the marked ones are `chosen`.
-  void chooseSome(const char* name, const std::vector<std::string>& all,
-                  std::vector<std::string>& chosen) {
+  /// Draws a checkbox for each of `all`; `chosen` are the checked ones.
+  void drawCheckboxes(const char* name, const std::vector<std::string>& all,
+                      std::vector<std::string>& chosen) {
     ui.heading(name);
     const auto scope = ui.scope(name);
     const float half = ImGui::GetContentRegionAvail().x / 2;
@@ -90,45 +90,45 @@ class BakeForm : BatchForm {
   }
 
   void drawOptions() {
-    chooseSome("scenes", scenes_, options_.sources);
-    chooseSome("object types", types_, options_.scene.object_types);
-    chooseSome("recorders", recorders_, options_.scene.recorders);
-    ui.heading("Each of them");
+    drawCheckboxes("scenes", scenes_, options_.sources);
+    drawCheckboxes("object types", types_, options_.scene.object_types);
+    drawCheckboxes("recorders", recorders_, options_.scene.recorders);
+    ui.heading("Settings");
     stale_ |= ui.text("objects", counts_, "1000, 8000");
-    ui.tooltip("How many bodies: one recording for each number");
+    ui.tooltip("Numbers of bodies, one recording each");
     stale_ |= ui.integer("frames", frames_, 1, 1'000'000, "Frames after the initial pose");
     stale_ |= ui.combo("engine", engine_, engines_, "Physics engine");
     std::int64_t threads = options_.threads;
-    if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
+    if (ui.integer("threads", threads, 1, 256, "Number of recordings to bake in parallel")) {
       options_.threads = static_cast<int>(threads);
     }
     drawFolder("output", "Directory for recordings", directory_, stale_);
   }
 
-  /// Takes over the inputs and makes the preview.
+  /// Reads the inputs and makes the preview.
   void update() {
-    stale_ = begun_ = false;
+    stale_ = started_ = false;
     preview_ = {};
     try {
       if (options_.sources.empty()) throw InputError("no scene is chosen");
       if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
       if (directory_.empty()) throw InputError("an output directory is needed");
-      options_.scene.objects = countsIn(counts_, "number of bodies", kMaxBodies);
+      options_.scene.objects = parseCounts(counts_, "number of bodies", kMaxBodies);
       if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
       options_.scene.parameters = {{"frames", std::to_string(frames_)},
                                    {"engine", engines_.at(engine_)}};
       options_.record = directory_;
       BakeOptions all = options_;
-      all.force = true;  // reads no file
+      all.force = true;  // skips reading existing recordings
       const auto plan = planBake(all);
       preview_.bytes = plan->bytes();
       for (const BakeJob& job : plan->pending) {
         for (const std::filesystem::path& path : job.paths) {
-          preview_.recordings.emplace_back(path, leastBytes(path, job.scene));
+          preview_.recordings.emplace_back(path, minBytes(path, job.scene));
         }
       }
     } catch (const InputError& error) {
-      preview_.fault = error.what();
+      preview_.error = error.what();
     }
   }
 
@@ -136,14 +136,14 @@ class BakeForm : BatchForm {
     ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
     const auto scope = ui.scope("recordings");
     for (const BakeReport::Item& item : report.items) {
-      const bool there = item.outcome == BakeOutcome::kept || item.outcome == BakeOutcome::baked;
+      const bool exists = item.outcome == BakeOutcome::kept || item.outcome == BakeOutcome::baked;
       const std::string name = item.path.filename().string();
       ImGui::PushID(item.path.c_str());
-      ImGui::BeginDisabled(!there);
+      ImGui::BeginDisabled(!exists);
       const Rgb rgb = item.outcome == BakeOutcome::failed ? ui.theme.bad : ui.theme.good;
       if (ui.selectableLine(
               name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
-              there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
+              exists || item.failure.empty() ? "Open the recording" : item.failure.c_str())) {
         session.open(item.path);
       }
       ImGui::EndDisabled();
@@ -152,9 +152,9 @@ class BakeForm : BatchForm {
   }
 
   void drawPreview() const {
-    if (!preview_.fault.empty()) {
+    if (!preview_.error.empty()) {
       ui.heading("To bake");
-      ui.paragraph(preview_.fault, ui.theme.warning);
+      ui.paragraph(preview_.error, ui.theme.warning);
       return;
     }
     ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),
@@ -175,8 +175,8 @@ class BakeForm : BatchForm {
   std::int64_t frames_ = 100;
   std::size_t engine_ = 0;
   std::string directory_ = "recordings";
-  bool stale_ = true;   ///< the preview is not that of the inputs
-  bool begun_ = false;  ///< what the inputs say has been begun
+  bool stale_ = true;     ///< the preview is outdated
+  bool started_ = false;  ///< a bake with the current inputs was started
   Preview preview_;
 };
 

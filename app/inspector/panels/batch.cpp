@@ -1,4 +1,4 @@
-// Long work: baking many recordings, running many cases.
+// Batch work: baking many recordings, running many cases.
 
 #include "inspector/panels/bake_form.h"
 #include "inspector/panels/benchmark_form.h"
@@ -28,7 +28,7 @@ class BatchPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Batch", DockArea::left,
-                               "Baking many recordings, running many cases", make<BatchPanel>};
+extern const PanelSpec spec = {"Batch", DockArea::left, "Bake many recordings, run many cases",
+                               make<BatchPanel>};
 
 }  // namespace broadmark::panels::batch

@@ -1,4 +1,4 @@
-// The part of the panel Batch that runs algorithms on recordings.
+// The form of the panel Batch that runs algorithms on recordings.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "broadmark/error.h"
-#include "inspector/panels/batch_parts.h"
+#include "inspector/panels/batch_form.h"
 #include "inspector/session/text_lists.h"
 #include "request/cases.h"
 #include "request/run_request.h"
@@ -25,10 +25,11 @@ class BenchmarkForm : BatchForm {
     BackgroundBenchmark& benchmark = session.jobs.get<BackgroundBenchmark>();
     const BackgroundBenchmark::Report report = benchmark.report();
     const bool running = benchmark.running();
-    if (drawStart(benchmark, "Runs in the background; best while nothing is played",
-                  "Keeps the cases that are finished")) {
-      session.notices.attempt([&] {
-        startBenchmark(benchmark, request(), session.tracks.algorithms(), session.jobs.make_host);
+    if (drawStart(benchmark, "Run in the background; pause playback for accurate times",
+                  "Stop; finished cases are kept")) {
+      session.notices.catchErrors([&] {
+        startBenchmark(benchmark, request(), session.tracks.algorithms(),
+                       session.jobs.make_executor);
       });
     }
     ImGui::BeginDisabled(running);
@@ -44,19 +45,19 @@ class BenchmarkForm : BatchForm {
  private:
   using Path = std::filesystem::path;
 
-  /// The recordings of boxes below a folder, sorted; none where there is no such folder.
+  /// Returns the sorted box recordings below a folder; none if it does not exist.
   static std::vector<Path> recordingsBelow(const Path& folder) {
     const std::vector<std::string> extensions = boxRecordingExtensions();
-    std::vector<Path> found;
+    std::vector<Path> recordings;
     std::error_code failed;
     for (std::filesystem::recursive_directory_iterator entry(folder, failed), end;
          !failed && entry != end; entry.increment(failed)) {
-      const bool is_one =
+      const bool matches =
           std::ranges::find(extensions, entry->path().extension().string()) != extensions.end();
-      if (is_one && entry->is_regular_file(failed)) found.push_back(entry->path());
+      if (matches && entry->is_regular_file(failed)) recordings.push_back(entry->path());
     }
-    std::ranges::sort(found);
-    return found;
+    std::ranges::sort(recordings);
+    return recordings;
   }
 
   void drawOptions() {
@@ -64,19 +65,19 @@ class BenchmarkForm : BatchForm {
     drawFolder("folder", "Folder of recordings", directory_, stale_);
     if (stale_ || ImGui::IsWindowAppearing()) findRecordings();
     drawRecordings();
-    ui.heading("How they are run");
+    ui.heading("Run settings");
     ui.text("algorithms", algorithms_, "sap*, kd, all");
-    ui.tooltip("Ids, families, patterns, or all, as --algorithm takes them");
-    if (wideButton("Those in Algorithms", "Takes what the panel Algorithms holds")) {
+    ui.tooltip("Ids, families, patterns or all, as for --algorithm");
+    if (wideButton("Those in Algorithms", "Use the algorithms of the panel Algorithms")) {
       algorithms_.clear();
       for (const TrackEdit& track : session.tracks.list) {
         algorithms_ += (algorithms_.empty() ? "" : ", ") + track.test_case.algorithm.id;
       }
     }
     ui.text("threads", threads_, "1, 2");
-    ui.tooltip("Of parallel algorithms; each number makes a case");
+    ui.tooltip("Thread counts of parallel algorithms, one case each");
     ui.integer("repetitions", repetitions_, 1, 1000,
-               "How often each case is run, interleaved with the others");
+               "Number of runs of each case, interleaved with the other cases");
     ui.combo("check", check_, kCheckModes.names(),
              "full: exact pairs in every frame; hash: counts and hashes; off");
     ui.text("results", results_, "results.json");
@@ -86,14 +87,14 @@ class BenchmarkForm : BatchForm {
     stale_ = false;
     const auto before = std::exchange(recordings_, {});
     for (const Path& path : recordingsBelow(directory_)) {
-      const auto known = std::ranges::find(before, path, &std::pair<Path, bool>::first);
-      recordings_.emplace_back(path, known == before.end() || known->second);
+      const auto previous = std::ranges::find(before, path, &std::pair<Path, bool>::first);
+      recordings_.emplace_back(path, previous == before.end() || previous->second);
     }
   }
 
   void drawRecordings() {
     if (recordings_.empty()) {
-      ui.faintParagraph("There are none in this folder: bake some, or choose another one.");
+      ui.faintParagraph("No recordings in this folder: bake some, or choose another folder.");
       return;
     }
     const auto scope = ui.scope("recordings");
@@ -102,26 +103,26 @@ class BenchmarkForm : BatchForm {
     }
   }
 
-  /// Throws InputError for inputs that mean nothing.
+  /// Throws InputError for invalid inputs.
   [[nodiscard]] RunRequest request() const {
     RunRequest request;
     for (const auto& [path, marked] : recordings_) {
       if (marked) request.sources.push_back(path.string());
     }
     if (request.sources.empty()) throw InputError("no recording is chosen");
-    request.cases.algorithms = wordsIn(algorithms_);
+    request.cases.algorithms = parseWords(algorithms_);
     if (request.cases.algorithms.empty()) throw InputError("no algorithm is chosen");
-    for (const std::uint32_t threads : countsIn(threads_, "number of threads", 256)) {
+    for (const std::uint32_t threads : parseCounts(threads_, "number of threads", 256)) {
       request.cases.threads.push_back(static_cast<int>(threads));
     }
-    request.repetitions.most = static_cast<int>(repetitions_);
+    request.repetitions.max_count = static_cast<int>(repetitions_);
     request.policy.check = kCheckModes.entries.at(check_).value;
     if (results_.empty()) throw InputError("a file for the results is needed");
     request.outputs = {{"json", results_}};
     return request;
   }
 
-  /// What would be run, or why nothing would.
+  /// Draws the number of cases and recordings, or the error in the inputs.
   void drawPreview() const {
     ui.heading("To run");
     try {
@@ -136,20 +137,20 @@ class BenchmarkForm : BatchForm {
 
   void drawItems(const BenchmarkReport& report) {
     ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
-    const bool any_kept = std::ranges::any_of(report.items, &BenchmarkReport::Item::kept);
-    if (report.state != TaskState::running && any_kept &&
-        wideButton("Open results", "Lists them in the panel Cases")) {
+    const bool any_saved = std::ranges::any_of(report.items, &BenchmarkReport::Item::saved);
+    if (report.state != TaskState::running && any_saved &&
+        wideButton("Open results", "List the results in the panel Cases")) {
       session.open(report.file);
     }
     const auto scope = ui.scope("cases");
     clipped(report.items.size(), [&](std::size_t row) {
       const BenchmarkReport::Item& item = report.items[row];
       const bool ok = item.status == Status::ok;
-      ImGui::BeginDisabled(!item.kept && report.state == TaskState::running);
+      ImGui::BeginDisabled(!item.saved && report.state == TaskState::running);
       const std::string right =
           ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
       if (ui.selectableLine(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
-                            item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+                            item.reason.empty() ? "Open the case" : item.reason.c_str())) {
         session.openCase(report.file, item.id);
       }
       if (row == 0) ui.note("first");
@@ -158,8 +159,8 @@ class BenchmarkForm : BatchForm {
   }
 
   std::string directory_ = "recordings";
-  std::vector<std::pair<Path, bool>> recordings_;  ///< whether it is marked
-  bool stale_ = true;                              ///< there may be others
+  std::vector<std::pair<Path, bool>> recordings_;  ///< with their checkboxes
+  bool stale_ = true;                              ///< recordings_ is outdated
   std::string algorithms_ = "sap, kd, grid2d-sap, columns";
   std::string threads_ = "1";
   std::int64_t repetitions_ = 3;

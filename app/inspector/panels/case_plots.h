@@ -1,5 +1,5 @@
-// What is plotted of a results file: times over the frames of the marked cases, or over the numbers
-// of bodies of all listed ones.
+// Plots of a results file: times over the frames of the marked cases, or over the numbers of bodies
+// of all listed cases.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,13 +20,13 @@ class CasePlots : PanelContext {
  public:
   explicit CasePlots(const PanelContext& context) : PanelContext(context) {}
 
-  /// The choices, and below them the plot.
+  /// Draws the options, and the plot below.
   void draw(OpenedResults& results) {
     drawChoices();
     overBodies() ? drawBodies(results) : drawFrames(results);
   }
 
-  /// By row: the colour of the curve that the case has or belongs to.
+  /// Returns for each row the colour of its case's curve, if it has one.
   std::vector<std::optional<Rgb>> rowColours(const Palette& palette, OpenedResults& results) const {
     std::vector<std::vector<std::size_t>> rows_of_curves;
     if (overBodies()) {
@@ -53,27 +53,27 @@ class CasePlots : PanelContext {
 
  private:
   static constexpr std::size_t kMaxCurves = 24;  // more are indistinguishable
-  static constexpr float kPointPlace = 3;  // pixels around a point that are noted as its place
+  static constexpr float kPointRadius = 3;       // pixels, of the rectangle registered for a point
 
   using Row = OpenedResults::Row;
 
-  /// As many as are plotted; says so where these are not all.
+  /// Returns the first kMaxCurves curves; writes a note if others are left out.
   template <class Curve>
-  std::span<const Curve> firstOf(const std::vector<Curve>& curves, const char* which) {
+  std::span<const Curve> limited(const std::vector<Curve>& curves, const char* noun) {
     if (curves.size() > kMaxCurves) {
       ImGui::SameLine();
-      ui.faint(fmt::format("the first {} of {} {}", kMaxCurves, curves.size(), which));
+      ui.faint(fmt::format("the first {} of {} {}", kMaxCurves, curves.size(), noun));
     }
     return std::span(curves).first(std::min(kMaxCurves, curves.size()));
   }
 
   void drawChoices() {
-    ui.combo("##phase", phase_, kPhases.names(), "Which time is plotted", 140 * ui.scale);
+    ui.combo("##phase", phase_, kPhases.names(), "Time to plot", 140 * ui.scale);
     ImGui::SameLine();
     ui.combo("##over", over_, {"over frames", "over bodies"},
-             "The marked cases over their frames, or all listed ones over their numbers of bodies",
+             "Plot marked cases over frames, or all listed cases over numbers of bodies",
              100 * ui.scale);
-    Ui::besideIfRoom(100 * ui.scale);
+    Ui::sameLineIfFits(100 * ui.scale);
     ui.checkbox("logarithmic", logarithmic_);
   }
 
@@ -82,28 +82,28 @@ class CasePlots : PanelContext {
       ui.faintParagraph("Mark cases in the table to see their times over the frames.");
       return;
     }
-    const auto curves = firstOf(results.curves(phase()), "marked");
+    const auto curves = limited(results.curves(phase()), "marked");
     const Palette& theme = ui.theme;
     const FrameProviderRequest* open = session.playback.source().get();
     const bool is_open = open != nullptr && open->origin == FrameOrigin::results;
     std::vector<PlotCurve> plotted;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     const auto& recording = results.rows()[curves.front().row].recording;
-    const bool one_recording = std::ranges::all_of(curves, [&](const OpenedResults::Curve& curve) {
+    const bool same_recording = std::ranges::all_of(curves, [&](const OpenedResults::Curve& curve) {
       return results.rows()[curve.row].recording == recording;
     });
     const auto colours = rowColours(theme, results);
     std::uint32_t last = 1;
     for (std::size_t i = 0; i < curves.size(); ++i) {
       const Row& row = results.rows()[curves[i].row];
-      plotted.push_back({.label = one_recording ? row.algorithm : row.result.id,
+      plotted.push_back({.label = same_recording ? row.algorithm : row.result.id,
                          .colour = *colours[curves[i].row],
                          .values = &curves[i].seconds,
                          .circled = nullptr});
       wrong.frames.push_back(&curves[i].mismatches);
       last = std::max(last, curves[i].seconds.size() - 1);
     }
-    zoom_.follow(nullptr, last, 0);
+    zoom_.update(nullptr, last, 0);
     plotFrames("plot", plotted,
                {.logarithmic = logarithmic_, .unit = "s", .span = {}, .marks = {wrong}}, zoom_,
                is_open);
@@ -112,14 +112,12 @@ class CasePlots : PanelContext {
   void drawBodies(OpenedResults& results) {
     if (results.scaling(phase()).empty()) {
       ui.faintParagraph(
-          "Open results of a scene in several numbers of bodies (--objects 1000,2000,4000) to see "
-          "how "
-          "times grow. Of each algorithm two listed cases of different sizes are needed, complete "
-          "and "
-          "right.");
+          "Open results of a scene with several numbers of bodies (--objects 1000,2000,4000) to "
+          "see how times grow. Each algorithm needs two complete and correct cases of different "
+          "sizes in the list.");
       return;
     }
-    const auto curves = firstOf(results.scaling(phase()), "curves");
+    const auto curves = limited(results.scaling(phase()), "curves");
     const auto colours = rowColours(ui.theme, results);
     std::vector<PointCurve> plotted;
     for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -135,17 +133,17 @@ class CasePlots : PanelContext {
     const auto row_of = [&](const DrawnPoint& point) -> Row& {
       return results.rows()[curves[point.curve].points[point.point].row];
     };
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PointPlotResult done = drawPointPlot(
-        "bodies", plotted, {.logarithmic = logarithmic_, .unit = "s", .across = "bodies"}, room.x,
-        room.y);
+    const ImVec2 size = ImGui::GetContentRegionAvail();
+    const PointPlotResult result = drawPointPlot(
+        "bodies", plotted, {.logarithmic = logarithmic_, .unit = "s", .across = "bodies"}, size.x,
+        size.y);
     ui.note("plot");
-    for (const DrawnPoint& point : done.drawn) {
+    for (const DrawnPoint& point : result.drawn) {
       ui.noteAt("point/" + row_of(point).result.id,
-                {point.at.x - kPointPlace, point.at.y - kPointPlace},
-                {point.at.x + kPointPlace, point.at.y + kPointPlace});
+                {point.at.x - kPointRadius, point.at.y - kPointRadius},
+                {point.at.x + kPointRadius, point.at.y + kPointRadius});
     }
-    if (done.clicked) session.openCase(row_of(*done.hovered));
+    if (result.clicked) session.openCase(row_of(*result.hovered));
   }
 
   [[nodiscard]] Phase phase() const { return kPhases.entries.at(phase_).value; }
@@ -154,7 +152,7 @@ class CasePlots : PanelContext {
   std::size_t phase_ = kPhases.entries.size() - 1;  ///< the last: total
   std::size_t over_ = 0;                            ///< 0: frames; 1: bodies
   bool logarithmic_ = true;
-  Timeline zoom_;  ///< of the frames
+  Timeline zoom_;  ///< range of the plotted frames
 };
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// The cases of a results file: their numbers, their times as plots, and the way back to each.
+// The cases of a results file as a table and as plots; a click opens a case.
 
 #include <fmt/format.h>
 
@@ -12,13 +12,13 @@
 #include "support/child_program.h"
 #include "support/table.h"
 
-#include <imgui_stdlib.h>  // after imgui.h, which it lacks
+#include <imgui_stdlib.h>  // requires imgui.h
 
 namespace broadmark::panels::cases {
 namespace {
 
-constexpr float kTableShare = 0.52F;  // of the width; the rest is the plot's
-constexpr float kRoomForBoth = 760;   // units: narrower, it is either the one or the other
+constexpr float kTableShare = 0.52F;     // of the width; the rest is the plot's
+constexpr float kMinWidthForBoth = 760;  // units; a narrower panel shows one of both
 
 constexpr std::string_view kStatus = "status";
 
@@ -27,7 +27,7 @@ using Row = OpenedResults::Row;
 std::string secondsText(double seconds) { return withPrefix(seconds, "s"); }
 
 std::string textOf(const Row& row, const CaseColumn& column) {
-  if (column.shown.known == Known::checked && !row.result.checked) return "not checked";
+  if (column.shown.known == Availability::checked && !row.result.checked) return "not checked";
   return cellText(column, row.result, row.summary.value_or(Summary{}), secondsText);
 }
 
@@ -38,55 +38,54 @@ class CasesPanel final : public Panel {
   void draw() override {
     if (!session.results) {
       ui.paragraph(
-          "Open or drop a results file (.json or .jsonl, whole or not yet complete) to see its "
-          "cases, plot their times, and open each of them on what it ran on.");
+          "Open or drop a results file (.json or .jsonl, complete or partial) to list its cases, "
+          "plot their times, and open a case on its recording.");
       return;
     }
     OpenedResults& results = *session.results;
     const SplitPane parts{
-        .share = kTableShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = plot_alone_};
+        .share = kTableShare, .min_width = kMinWidthForBoth * ui.scale, .second_only = plot_only_};
     drawControls(results, parts.both());
     parts.draw([&] { drawTable(results); }, [&] { plots_.draw(results); });
   }
 
  private:
   void drawControls(OpenedResults& results, bool both) {
-    const std::string what = summaryText(results);
-    ui.faint(fittingText(what, ImGui::GetContentRegionAvail().x));
-    ui.tooltip(fmt::format("{}: {}", results.file().string(), what).c_str());
+    const std::string summary = summaryText(results);
+    ui.faint(fittingText(summary, ImGui::GetContentRegionAvail().x));
+    ui.tooltip(fmt::format("{}: {}", results.file().string(), summary).c_str());
     ImGui::SetNextItemWidth(110 * ui.scale);
-    ImGui::InputTextWithHint("##search", "search", &searched_);
+    ImGui::InputTextWithHint("##search", "search", &search_);
     ui.note("search");
-    ui.tooltip("Lists only cases with this text in their id");
+    ui.tooltip("List only cases with this text in their id");
     ImGui::SameLine();
-    ui.checkbox("wrong only", only_wrong_, "Lists the cases that gave a wrong answer");
-    results.filter(searched_, only_wrong_);
+    ui.checkbox("wrong only", only_wrong_, "List only cases with wrong answers");
+    results.filter(search_, only_wrong_);
     if (!both) {
       ImGui::SameLine();
-      ui.toggle("Plot", plot_alone_, "The plot in place of the table");
+      ui.toggle("Plot", plot_only_, "Show the plot instead of the table");
     }
-    Ui::besideIfRoom(105 * ui.scale);
+    Ui::sameLineIfFits(105 * ui.scale);
     drawReport(results);
   }
 
-  /// Writes the report page of all cases, and opens it.
+  /// Draws the buttons that write and open the report page of all cases.
   void drawReport(const OpenedResults& results) {
     BackgroundReport& work = session.jobs.get<BackgroundReport>();
     const BackgroundReport::Report report = work.report();
     if (report.state == TaskState::running) {
-      if (ui.button("Cancel report", "It is being written")) work.cancel();
+      if (ui.button("Cancel report", "Stop writing the report page")) work.cancel();
       return;
     }
     if (ui.button("Report page…",
-                  "Writes all cases as an HTML page, as python3 -m broadmark "
-                  "report does")) {
+                  "Write all cases to an HTML page, like python3 -m broadmark report")) {
       askPage(results);
     }
-    static const bool opens = isProgramThere("xdg-open");
+    static const bool opens = isProgramInPath("xdg-open");
     if (report.state != TaskState::done || !opens) return;
-    Ui::besideIfRoom(85 * ui.scale);
+    Ui::sameLineIfFits(85 * ui.scale);
     if (ui.button("Open page", report.page.string().c_str())) {
-      session.notices.attempt([&] { openByDesktop(report.page); });
+      session.notices.catchErrors([&] { openWithDesktop(report.page); });
     }
   }
 
@@ -98,7 +97,7 @@ class CasesPanel final : public Panel {
                .suggestion = page.replace_extension(".html"),
                .chosen = [&session = session,
                           file = results.file()](const std::filesystem::path& chosen) {
-                 session.notices.attempt(
+                 session.notices.catchErrors(
                      [&] { startReport(session.jobs.get<BackgroundReport>(), file, chosen); });
                }});
   }
@@ -106,7 +105,8 @@ class CasesPanel final : public Panel {
   static std::string summaryText(const OpenedResults& results) {
     std::string text = fmt::format("{}: {}", results.file().filename().string(),
                                    counted(results.rows().size(), "case"));
-    text += results.wrong() > 0 ? fmt::format(", {} wrong", results.wrong()) : ", none wrong";
+    text +=
+        results.wrongCount() > 0 ? fmt::format(", {} wrong", results.wrongCount()) : ", none wrong";
     return text + (results.complete() ? "" : ", not complete");
   }
 
@@ -116,8 +116,7 @@ class CasesPanel final : public Panel {
                                        ImGuiTableFlags_ScrollY | ImGuiTableFlags_Sortable |
                                        ImGuiTableFlags_SortTristate;
     if (results.listed().empty()) {
-      ui.faintParagraph(results.rows().empty() ? "The file has no cases."
-                                               : "No case is like that.");
+      ui.faintParagraph(results.rows().empty() ? "The file has no cases." : "No case matches.");
       return;
     }
     const auto columns = static_cast<int>(columns_.size()) + 1;
@@ -147,14 +146,14 @@ class CasesPanel final : public Panel {
   }
 
   void sort(OpenedResults& results) const {
-    ImGuiTableSortSpecs* const wanted = ImGui::TableGetSortSpecs();
-    if (wanted == nullptr || !wanted->SpecsDirty) return;
-    wanted->SpecsDirty = false;
-    if (wanted->SpecsCount == 0) {
+    ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();
+    if (specs == nullptr || !specs->SpecsDirty) return;
+    specs->SpecsDirty = false;
+    if (specs->SpecsCount == 0) {
       results.sort("", false);
       return;
     }
-    const ImGuiTableColumnSortSpecs& by = wanted->Specs[0];
+    const ImGuiTableColumnSortSpecs& by = specs->Specs[0];
     results.sort(columns_.at(static_cast<std::size_t>(by.ColumnIndex) - 1)->key,
                  by.SortDirection == ImGuiSortDirection_Descending);
   }
@@ -167,7 +166,7 @@ class CasesPanel final : public Panel {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
     bool marked = row.marked;
     if (ui.checkbox(fmt::format("##mark {}", row.result.id).c_str(), marked,
-                    "Plots its times over the frames")) {
+                    "Plot its times over its frames")) {
       results.mark(index, marked);
     }
     ImGui::PopStyleVar();
@@ -175,7 +174,7 @@ class CasesPanel final : public Panel {
       ImGui::TableNextColumn();
       const std::optional<Rgb> rgb = colourOf(row, column->key);
       if (column == columns_.front()) {
-        drawOpener(row, curve ? curve : rgb, first);
+        drawOpenCell(row, curve ? curve : rgb, first);
       } else {
         rgb ? ui.coloured(*rgb, textOf(row, *column)) : ui.plain(textOf(row, *column));
         if (column->key == kStatus) ui.tooltip(row.result.reason.c_str());
@@ -184,12 +183,12 @@ class CasesPanel final : public Panel {
     ImGui::PopID();
   }
 
-  /// The cell that opens the case, across the whole row.
-  void drawOpener(Row& row, std::optional<Rgb> rgb, bool first) {
+  /// Draws a cell across the whole row that opens the case.
+  void drawOpenCell(Row& row, std::optional<Rgb> rgb, bool first) {
     const FrameProviderRequest* open = session.playback.source().get();
     const bool is_open =
         open != nullptr && open->origin == FrameOrigin::results && open->title == row.result.id;
-    const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id
+    const std::string tip = row.obstacle.empty() ? "Open the case: " + row.result.id
                                                  : "Cannot be opened: " + row.obstacle;
     const std::string label = fmt::format("{}###{}", row.algorithm, row.result.id);
     const bool pressed = ui.selectable(label.c_str(), is_open, tip.c_str(), rgb);
@@ -197,7 +196,7 @@ class CasesPanel final : public Panel {
     if (pressed) session.openCase(row);
   }
 
-  /// Nothing: as all text.
+  /// Returns nothing for the default text colour.
   std::optional<Rgb> colourOf(const Row& row, std::string_view column) {
     if (column == kStatus) {
       return row.result.status == Status::ok ? ui.theme.good : ui.theme.bad;
@@ -207,17 +206,16 @@ class CasesPanel final : public Panel {
     return {};
   }
 
-  std::string searched_;
+  std::string search_;
   bool only_wrong_ = false;
-  bool plot_alone_ = false;
+  bool plot_only_ = false;
   CasePlots plots_{*this};
-  const std::vector<const CaseColumn*> columns_ = caseColumns(&ColumnShown::inspector);
+  const std::vector<const CaseColumn*> columns_ = caseColumns(&ColumnDisplay::inspector);
 };
 
 }  // namespace
 
-extern const PanelKind kind = {"Cases", DockArea::bottom,
-                               "The cases of a results file: their times, and each of them again",
-                               make<CasesPanel>};
+extern const PanelSpec spec = {"Cases", DockArea::bottom,
+                               "List, plot and open the cases of a results file", make<CasesPanel>};
 
 }  // namespace broadmark::panels::cases

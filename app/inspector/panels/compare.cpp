@@ -14,9 +14,9 @@
 namespace broadmark::panels::compare {
 namespace {
 
-constexpr float kPairsShare = 0.42F;        // of the width; the rest is the plot's
-constexpr float kRoomForBoth = 560;         // units: narrower, it is either the one or the other
-constexpr double kBetweenSummaries = 0.25;  // seconds
+constexpr float kPairsShare = 0.42F;       // of the width; the rest is the plot's
+constexpr float kMinWidthForBoth = 560;    // units; a narrower panel shows one of both
+constexpr double kSummaryInterval = 0.25;  // seconds
 
 class ComparePanel final : public Panel {
  public:
@@ -33,9 +33,9 @@ class ComparePanel final : public Panel {
       return;
     }
     const SplitPane parts{
-        .share = kPairsShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = times_alone_};
+        .share = kPairsShare, .min_width = kMinWidthForBoth * ui.scale, .second_only = times_only_};
     if (!parts.both()) {
-      ui.toggle("Times", times_alone_, "Compare frame times instead of pairs");
+      ui.toggle("Times", times_only_, "Compare frame times instead of pairs");
     }
     parts.draw([&] { drawPairs(); }, [&] { drawTimes(); });
   }
@@ -44,7 +44,7 @@ class ComparePanel final : public Panel {
   void drawPairs() {
     const PairComparison* const comparison = progress->comparison.get();
     if (comparison == nullptr) {
-      ui.faintParagraph("There are not two answers yet.");
+      ui.faintParagraph("Waiting for both answers.");
       return;
     }
     ui.plain(fmt::format("{} in both", counted(comparison->both, "pair")));
@@ -54,10 +54,10 @@ class ComparePanel final : public Panel {
                 fmt::format("{} second only", comparison->second_only.size()));
     ui.tooltip("The panel Display colours the bodies of these pairs: First and second view");
     ImGui::BeginChild("list", {0, 0}, true, ImGuiWindowFlags_NavFlattened);
-    const std::size_t firsts = comparison->first_only.size();
-    clipped(firsts + comparison->second_only.size(), [&](std::size_t row) {
-      const bool of_first = row < firsts;
-      drawPair(of_first ? comparison->first_only[row] : comparison->second_only[row - firsts],
+    const std::size_t first_count = comparison->first_only.size();
+    clipped(first_count + comparison->second_only.size(), [&](std::size_t row) {
+      const bool of_first = row < first_count;
+      drawPair(of_first ? comparison->first_only[row] : comparison->second_only[row - first_count],
                of_first);
       if (row == 0) ui.note("first pair");
     });
@@ -71,18 +71,18 @@ class ComparePanel final : public Panel {
     if (ui.selectableLine(pairName(pair).c_str(), is_selected,
                           of_first ? "first only" : "second only",
                           of_first ? ui.theme.first_only : ui.theme.second_only,
-                          "Selects both bodies and flies to them")) {
-      session.selection.visit(pair);
+                          "Select both bodies and move the camera to them")) {
+      session.selection.flyToPair(pair);
     }
     ImGui::PopID();
   }
 
   void drawTimes() {
-    const TrackReport* const first = trackOf(progress->tracks, session.tracks.shown());
-    const TrackReport* const second = trackOf(progress->tracks, session.second->track);
+    const TrackReport* const first = findTrack(progress->tracks, session.tracks.shown());
+    const TrackReport* const second = findTrack(progress->tracks, session.second->track);
     if (first == nullptr || second == nullptr || first == second || session.second->source) {
       ui.faintParagraph(
-          "Times are compared where the views show two algorithms on the same recording.");
+          "Times are compared if the views show two algorithms on the same recording.");
       return;
     }
     summarise(*first, *second);
@@ -97,18 +97,18 @@ class ComparePanel final : public Panel {
                                 counted(ratios_.first_slower + ratios_.second_slower, "frame")),
                     ImGui::GetContentRegionAvail().x));
     ui.note("median");
-    drawExtreme("most", *ratios_.highest);
-    Ui::besideIfRoom(150 * ui.scale);
-    drawExtreme("least", *ratios_.lowest);
+    drawExtreme("most", "max", *ratios_.highest);
+    Ui::sameLineIfFits(150 * ui.scale);
+    drawExtreme("least", "min", *ratios_.lowest);
     drawRatios();
   }
 
-  /// A button that goes to the frame.
-  void drawExtreme(const char* name, TimeRatios::Extreme of) {
+  /// Draws a button that goes to the frame.
+  void drawExtreme(const char* name, const char* text, TimeRatios::Extreme extreme) {
     const std::string label =
-        fmt::format("{} {:.3g} in frame {}###{}", name, of.ratio, of.frame, name);
-    if (ui.button(label.c_str(), "Goes to this frame")) {
-      session.playback.goTo(of.frame);
+        fmt::format("{} {:.3g} in frame {}###{}", text, extreme.ratio, extreme.frame, name);
+    if (ui.button(label.c_str(), "Go to this frame")) {
+      session.playback.goTo(extreme.frame);
     }
   }
 
@@ -124,27 +124,27 @@ class ComparePanel final : public Panel {
                session.timeline);
   }
 
-  /// Long recordings take a while: not for each picture.
+  /// Throttled, because long recordings take a while.
   void summarise(const TrackReport& first, const TrackReport& second) {
     const std::array<int, 2> numbers = {first.spec.number, second.spec.number};
     const double now = ImGui::GetTime();
-    if (numbers == summarised_ && now < summarise_next_) return;
+    if (numbers == summarised_ && now < next_summary_) return;
     summarised_ = numbers;
-    summarise_next_ = now + kBetweenSummaries;
+    next_summary_ = now + kSummaryInterval;
     ratios_ = ratiosOf(first, second);
   }
 
-  bool times_alone_ = false;
+  bool times_only_ = false;
   TimeRatios ratios_;
-  std::array<int, 2> summarised_{};  ///< tracks, by number
-  double summarise_next_ = 0;        ///< seconds of the user interface
+  std::array<int, 2> summarised_{};  ///< track numbers
+  double next_summary_ = 0;          ///< seconds of the user interface
 };
 
 }  // namespace
 
-extern const PanelKind kind = {
+extern const PanelSpec spec = {
     "Compare", DockArea::bottom,
-    "The two views: pairs that only one of them shows, and frames in which one is slower",
+    "Compare the two views: pairs that only one of them shows, and frame times",
     make<ComparePanel>};
 
 }  // namespace broadmark::panels::compare

@@ -1,4 +1,4 @@
-// Colours, and what is drawn besides the bodies.
+// Colours, display options and the second view.
 
 #include <fmt/format.h>
 
@@ -26,8 +26,8 @@ class DisplayPanel final : public Panel {
                 "Hide bodies that are in no pair (H)");
     ui.checkbox("pair lines", options.pair_lines,
                 "Connect the centres of the bodies of reported pairs");
-    ui.checkbox("lines of all pairs", options.lines_of_all, "Not only of the selection's pairs",
-                options.pair_lines);
+    ui.checkbox("lines of all pairs", options.all_pair_lines,
+                "Draw the lines of all pairs, not only of the selection's", options.pair_lines);
     ui.checkbox("world", options.world_box);
     ui.checkbox("ground", options.ground);
     ui.checkbox("axes", options.axes);
@@ -40,9 +40,9 @@ class DisplayPanel final : public Panel {
   }
 
  private:
-  /// A checkbox for the bodies of a bit.
+  /// Draws a checkbox that shows or hides the bodies of a class or layer.
   template <class Bits>
-  void showBit(const std::string& label, Bits& hidden, std::size_t bit) {
+  void drawToggle(const std::string& label, Bits& hidden, std::size_t bit) {
     bool shown = ((hidden >> bit) & 1U) == 0;
     ImGui::PushID(static_cast<int>(bit));  // labels may repeat
     if (ui.checkbox(label.c_str(), shown, "Draw these bodies")) {
@@ -56,13 +56,13 @@ class DisplayPanel final : public Panel {
     ui.heading("Body filter");
     const auto& legend = view.content().colouring.legend;
     for (std::size_t i = 0; i < std::min<std::size_t>(legend.size(), 64); ++i) {
-      showBit(legend[i].label, filter.hidden_classes, i);
+      drawToggle(legend[i].label, filter.hidden_classes, i);
     }
     drawLayers();
     ui.number("smallest", filter.smallest, 0, kLargestSize,
               "Hide bodies with a shorter longest edge, in world units");
     ui.number("largest", filter.largest, 0, kLargestSize,
-              "Hide bodies with a longer longest edge, in world units; 0: none");
+              "Hide bodies with a longer longest edge, in world units; 0: no limit");
     std::size_t axis = static_cast<std::size_t>(filter.clip_axis) + 1;
     if (ui.combo("clip", axis, {"nothing", "along x", "along y", "along z"},
                  "Hide bodies with their centre beyond a plane")) {
@@ -91,14 +91,14 @@ class DisplayPanel final : public Panel {
     const auto scope = ui.scope("second");
     SecondViewRequest& second = *session.second;
     drawSecondAnswer(second);
-    bool stays = second.frame.has_value();
-    if (ui.checkbox("at frame", stays, "Stay at a frame while the first view plays")) {
+    bool fixed = second.frame.has_value();
+    if (ui.checkbox("at frame", fixed, "Stay at a frame while the first view plays")) {
       second.frame.reset();
-      if (stays) second.frame = session.playback.frame();
+      if (fixed) second.frame = session.playback.frame();
     }
     if (second.frame) {
       std::int64_t frame = *second.frame;
-      if (ui.integer("frame", frame, 0, lastFrameOf(), "Frame of the second view")) {
+      if (ui.integer("frame", frame, 0, lastFrame(), "Frame of the second view")) {
         second.frame = static_cast<std::uint32_t>(frame);
       }
     }
@@ -127,7 +127,7 @@ class DisplayPanel final : public Panel {
     second.track = chosen == 0 ? 0 : session.tracks.list[chosen - 1].number;
   }
 
-  std::int64_t lastFrameOf() {
+  std::int64_t lastFrame() {
     const auto& shown = progress->second;
     return shown ? shown->scene.frames : session.playback.lastFrame();
   }
@@ -138,7 +138,7 @@ class DisplayPanel final : public Panel {
                .suggestion = session.playback.source() ? session.playback.source()->recording
                                                        : std::filesystem::path(),
                .chosen = [&session = session](const std::filesystem::path& path) {
-                 session.showBeside(path);
+                 session.openInSecondView(path);
                }});
   }
 
@@ -150,7 +150,7 @@ class DisplayPanel final : public Panel {
     }
     for (std::size_t layer = 0; layer < 32; ++layer) {
       if (((used >> layer) & 1U) == 0) continue;
-      showBit(fmt::format("layer {}", layer), session.display.filter.hidden_layers, layer);
+      drawToggle(fmt::format("layer {}", layer), session.display.filter.hidden_layers, layer);
     }
   }
 
@@ -161,7 +161,7 @@ class DisplayPanel final : public Panel {
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
     options.colouring %= titles.size();
     ui.combo("colours", options.colouring, titles, "Meaning of the colours (C: next)");
-    if (options.colouring != before) options.filter.hidden_classes = 0;  // of the former colours
+    if (options.colouring != before) options.filter.hidden_classes = 0;
     ui.faintParagraph(options.colourMode().help);
     const Snapshot* snapshot = progress->snapshot.get();
     if (options.colourMode().of_tests && snapshot != nullptr &&
@@ -178,7 +178,7 @@ class DisplayPanel final : public Panel {
     ui.checkbox("only around the selection", options.structure_near);
     const Snapshot* const snapshot = progress->snapshot.get();
     const RecordedDrawing* const drawn = snapshot != nullptr ? snapshot->structure.get() : nullptr;
-    if (const int deepest = drawn != nullptr ? deepestLevel(*drawn) : 0; deepest > 0) {
+    if (const int deepest = drawn != nullptr ? maxLevel(*drawn) : 0; deepest > 0) {
       ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
       const int level = options.structure_level;
       ui.slider(fmt::format("depth {}###depth", level < 0 ? "all" : std::to_string(level)).c_str(),
@@ -197,17 +197,18 @@ class DisplayPanel final : public Panel {
     int column = 0;
     for (const auto& [direction, name] : kDirections.entries) {
       if (column++ % 4 != 0) ImGui::SameLine();
-      if (ui.button(std::string(name).c_str())) view.lookFrom(direction);
+      if (ui.button(std::string(name).c_str())) view.viewFrom(direction);
     }
     if (ui.button("whole scene", "Move the camera to show the whole scene")) {
-      view.lookAtAll();
+      view.showWholeScene();
     }
   }
 };
 
 }  // namespace
 
-extern const PanelKind kind = {"Display", DockArea::right,
-                               "Colours, and what is drawn besides the bodies", make<DisplayPanel>};
+extern const PanelSpec spec = {"Display", DockArea::right,
+                               "Colours, display options, body filter and second view",
+                               make<DisplayPanel>};
 
 }  // namespace broadmark::panels::display

@@ -1,4 +1,4 @@
-// Interleaves the algorithms on the open scene, frame by frame: the faster one, and its interval.
+// Interleaves the algorithms on the open scene frame by frame, and ranks them by their times.
 
 #include <fmt/format.h>
 
@@ -13,8 +13,8 @@
 namespace broadmark::panels::duel {
 namespace {
 
-constexpr float kTableShare = 0.68F;  // of the width; the rest is the histogram's
-constexpr float kRoomForBoth = 560;   // units: narrower, it is either the one or the other
+constexpr float kTableShare = 0.68F;     // of the width; the rest is the histogram's
+constexpr float kMinWidthForBoth = 560;  // units; a narrower panel shows one of both
 
 class DuelPanel final : public Panel {
  public:
@@ -25,20 +25,19 @@ class DuelPanel final : public Panel {
     drawControls(report);
     if (report.state == TaskState::idle) {
       ui.paragraph(
-          "Two or more algorithms of the panel Algorithms run the frames that are known so far, in "
-          "turns, until their ratio is known within 1 % or time is up. Best while nothing is "
-          "played.");
+          "Run two or more algorithms of the panel Algorithms in turns on the frames available so "
+          "far, until their ratio is known within 1 % or time is up. Pause playback for accurate "
+          "times.");
       return;
     }
     if (!report.result.ok()) return drawFailures(report.result);
     if (report.result.rounds() == 0) return;
     if (!report.result.ranking.empty()) ui.plain(verdictOf(report.result));
     const SplitPane parts{.share = kTableShare,
-                          .narrowest = kRoomForBoth * ui.scale,
-                          .second_alone = histogram_alone_};
+                          .min_width = kMinWidthForBoth * ui.scale,
+                          .second_only = histogram_only_};
     if (!parts.both()) {
-      ui.toggle("Histogram", histogram_alone_,
-                "How many rounds had which ratio, in place of the table");
+      ui.toggle("Histogram", histogram_only_, "Show the histogram of ratios instead of the table");
     }
     parts.draw([&] { drawTable(report.result); }, [&] { drawRatios(report.result); });
   }
@@ -46,7 +45,7 @@ class DuelPanel final : public Panel {
  private:
   void drawControls(const BackgroundDuel::Report& report) {
     if (report.state == TaskState::running) {
-      if (ui.button("Cancel", "Ends it without a verdict"))
+      if (ui.button("Cancel", "Stop the duel without a verdict"))
         session.jobs.get<BackgroundDuel>().cancel();
       ImGui::SameLine();
       ImGui::AlignTextToFramePadding();
@@ -80,9 +79,9 @@ class DuelPanel final : public Panel {
     }
   }
 
-  /// The ranking, or, until there is one, the algorithms in their own order.
+  /// Draws the ranking or, until there is one, the algorithms in their own order.
   void drawTable(const DuelResult& result) {
-    if (!ui.beginTable("ranking", {"", "algorithm", "median", "least", "ratio", "95 % interval"},
+    if (!ui.beginTable("ranking", {"", "algorithm", "median", "min", "ratio", "95 % interval"},
                        2)) {
       return;
     }
@@ -102,7 +101,7 @@ class DuelPanel final : public Panel {
     ImGui::TableNextColumn();
     ImGui::PushID(static_cast<int>(side));
     if (ui.selectable(result.sides[side].name.c_str(), side == shown_,
-                      "Shows its ratios to the first one in the histogram")) {
+                      "Show its ratios to the first algorithm in the histogram")) {
       shown_ = side;
     }
     ImGui::PopID();
@@ -112,7 +111,7 @@ class DuelPanel final : public Panel {
     ui.cell(side == 0 || rank == nullptr ? "" : intervalText(rank->ratio.ci95, 3));
   }
 
-  /// Of how many rounds had which ratio; a line where both are as fast.
+  /// Draws the histogram of the rounds' ratios, with a line at equal times.
   void drawRatios(const DuelResult& result) const {
     const std::size_t side = shown_ > 0 && shown_ < result.sides.size() ? shown_ : 1;
     ui.faint(fittingText(fmt::format("rounds by ratio of {}", result.sides[side].name),
@@ -122,14 +121,14 @@ class DuelPanel final : public Panel {
   }
 
   double max_seconds_ = 60;
-  bool histogram_alone_ = false;
+  bool histogram_only_ = false;
   std::size_t shown_ = 1;  ///< the side in the histogram
 };
 
 }  // namespace
 
-extern const PanelKind kind = {
+extern const PanelSpec spec = {
     "Duel", DockArea::bottom,
-    "Interleaves the algorithms on the open scene until the faster one is known", make<DuelPanel>};
+    "Interleave the algorithms on the open scene until the faster one is known", make<DuelPanel>};
 
 }  // namespace broadmark::panels::duel

@@ -1,5 +1,5 @@
-// Why a pair is missed or false: the frames and pairs in which an algorithm is wrong, the two
-// boxes, what led to it, and the smallest recording that shows it.
+// Analysis of missed and false pairs: the wrong frames and pairs of an algorithm, the two boxes,
+// their history, and export of the smallest recording that reproduces the fault.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "inspector/views/view.h"
 #include "support/words.h"
 
-#include <imgui_stdlib.h>  // after imgui.h, which it lacks
+#include <imgui_stdlib.h>  // requires imgui.h
 
 namespace broadmark::panels::mismatches {
 namespace {
@@ -28,13 +28,13 @@ class MismatchesPanel final : public Panel {
   void draw() override {
     if (progress->tracks.empty()) {
       ui.paragraph(
-          "Add an algorithm: its answers are compared with the right ones here, frame by frame.");
+          "Add an algorithm to compare its answers with the correct ones, frame by frame.");
     } else {
       const TrackReport& track = chooseTrack();
       drawVerdict(track);
       drawSearch();
       drawLists(track);
-      drawCase(track);
+      drawExportButton(track);
     }
     drawExport();
     drawPair();
@@ -42,7 +42,7 @@ class MismatchesPanel final : public Panel {
   }
 
  private:
-  /// The track of the shown answer, or else the first.
+  /// Draws the choice of the track: by default that of the shown answer, or else the first.
   const TrackReport& chooseTrack() {
     const std::vector<TrackReport>& tracks = progress->tracks;
     std::vector<std::string> names;
@@ -58,17 +58,17 @@ class MismatchesPanel final : public Panel {
     return tracks[chosen];
   }
 
-  /// Whether the snapshot is this track's answer, compared with the right one.
+  /// Whether the snapshot shows this track's answer, checked against the oracle.
   bool showsAnswerOf(const TrackReport& track) {
-    const auto& seen = progress->snapshot;
-    return seen && seen->checked && seen->track == track.spec.number;
+    const auto& snapshot = progress->snapshot;
+    return snapshot && snapshot->checked && snapshot->track == track.spec.number;
   }
 
   void drawVerdict(const TrackReport& track) {
     if (!session.mismatches.check) {
       ui.coloured(ui.theme.warning, "answers are not checked");
       ImGui::SameLine();
-      if (ui.button("Check them", "Compares every answer with the oracle's")) {
+      if (ui.button("Check them", "Compare every answer with the oracle's")) {
         session.mismatches.check = true;
       }
       return;
@@ -78,24 +78,26 @@ class MismatchesPanel final : public Panel {
       return;
     }
     if (!showsAnswerOf(track)) {
-      ui.faint(progress->doing.empty() ? "no answer for this frame" : progress->doing.c_str());
+      ui.faint(progress->activity.empty() ? "no answer for this frame"
+                                          : progress->activity.c_str());
       return;
     }
-    const Snapshot& seen = *progress->snapshot;
-    const FrameDifference& difference = seen.difference;
+    const Snapshot& snapshot = *progress->snapshot;
+    const FrameDifference& difference = snapshot.difference;
     if (!difference.isMismatch()) {
-      ui.coloured(ui.theme.good, fmt::format("right in frame {}", seen.frame));
+      ui.coloured(ui.theme.good, fmt::format("right in frame {}", snapshot.frame));
       return;
     }
-    ui.coloured(ui.theme.bad, fmt::format("frame {}: {}", seen.frame, mismatchText(difference)));
+    ui.coloured(ui.theme.bad,
+                fmt::format("frame {}: {}", snapshot.frame, mismatchText(difference)));
   }
 
   void drawSearch() {
     if (session.mismatches.searching()) {
-      if (wideButton("Stop here", "Stays at the frame that has been reached")) {
+      if (wideButton("Stop here", "Stop at the current frame")) {
         session.mismatches.endSearch(*progress);
       }
-    } else if (wideButton("Next mismatch", "Goes on to the next frame with a mismatch")) {
+    } else if (wideButton("Next mismatch", "Go to the next frame with a mismatch")) {
       session.mismatches.goToNext(*progress);
     }
   }
@@ -130,40 +132,40 @@ class MismatchesPanel final : public Panel {
 
   void drawPairs(const TrackReport& track) {
     if (!showsAnswerOf(track)) return;
-    const Snapshot& seen = *progress->snapshot;
-    const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
+    const Snapshot& snapshot = *progress->snapshot;
+    const std::vector<WrongPair> wrong = wrongPairs(snapshot.difference);
     if (wrong.empty()) ui.faint("no wrong pairs");
     clipped(wrong.size(), [&](std::size_t row) {
       const auto& [kind, pair] = wrong[row];
       const std::string name = fmt::format("{} {}", kind->name, pairName(pair));
       const std::vector<std::uint32_t> bodies = {pair.a, pair.b};
-      const bool clicked =
-          ui.selectable(name.c_str(), session.selection.bodies() == bodies,
-                        kind == &kWrongKinds.back()
-                            ? "Reported though apart, within the algorithm's margin: no mismatch"
-                            : "Selects both bodies and flies there",
-                        ui.theme.*kind->colour);
+      const bool clicked = ui.selectable(
+          name.c_str(), session.selection.bodies() == bodies,
+          kind == &kWrongKinds.back() ? "Apart, but within the algorithm's margin: no mismatch"
+                                      : "Select both bodies and move the camera to them",
+          ui.theme.*kind->colour);
       if (row == 0) ui.note("first pair");
-      if (clicked) session.selection.visit(pair);
+      if (clicked) session.selection.flyToPair(pair);
     });
     std::uint64_t all = 0;
-    for (const WrongKind& kind : kWrongKinds) all += seen.difference.*kind.count;
+    for (const WrongKind& kind : kWrongKinds) all += snapshot.difference.*kind.count;
     if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
   }
 
-  /// The button that begins an export.
-  void drawCase(const TrackReport& track) {
+  /// Draws the button that starts an export.
+  void drawExportButton(const TrackReport& track) {
     const bool wrong = showsAnswerOf(track) && progress->snapshot->difference.isMismatch() &&
                        !session.jobs.get<CaseExport>().running();
     if (wideButton("Export case…",
-                   "Writes the smallest recording on which the algorithm is still wrong", wrong)) {
-      files.ask({.title = "Export the smallest recording that fails",
-                 .purpose = FileDialog::Purpose::save,
-                 .extensions = boxRecordingExtensions(),
-                 .suggestion = fmt::format("{}{}", partName(progress->scene),
-                                           recordingExtension(progress->scene)),
-                 .chosen = [this, test_case = track.spec.test_case, seen = progress->snapshot](
-                               const auto& file) { session.exportCase(test_case, seen, file); }});
+                   "Write the smallest recording on which the algorithm is still wrong", wrong)) {
+      files.ask(
+          {.title = "Export the smallest recording that fails",
+           .purpose = FileDialog::Purpose::save,
+           .extensions = boxRecordingExtensions(),
+           .suggestion =
+               fmt::format("{}{}", partName(progress->scene), recordingExtension(progress->scene)),
+           .chosen = [this, test_case = track.spec.test_case, snapshot = progress->snapshot](
+                         const auto& file) { session.exportCase(test_case, snapshot, file); }});
     }
   }
 
@@ -174,14 +176,14 @@ class MismatchesPanel final : public Panel {
     const auto scope = ui.scope("export");
     ImGui::PushID("export");
     if (report.state == TaskState::running) {
-      const double whole = static_cast<double>(report.whole_bodies * report.whole_frames);
-      const double left = static_cast<double>(report.now.bodies * report.now.frames);
+      const double whole = static_cast<double>(report.original_bodies * report.original_frames);
+      const double remaining = static_cast<double>(report.progress.bodies * report.progress.frames);
       ImGui::ProgressBar(
-          static_cast<float>(whole > 0 ? 1 - left / whole : 1), {-1, 0},
-          fmt::format("{}, {} runs", extentText(report.now.bodies, report.now.frames),
-                      report.now.trials)
+          static_cast<float>(whole > 0 ? 1 - remaining / whole : 1), {-1, 0},
+          fmt::format("{}, {} runs", extentText(report.progress.bodies, report.progress.frames),
+                      report.progress.trials)
               .c_str());
-      if (ui.button("Cancel", "Nothing is written then")) case_export.cancel();
+      if (ui.button("Cancel", "Stop; nothing is written")) case_export.cancel();
     } else if (report.state == TaskState::done) {
       drawExported(report);
     } else {
@@ -194,53 +196,53 @@ class MismatchesPanel final : public Panel {
 
   void drawExported(const CaseExport::Report& report) {
     ui.coloured(ui.theme.good,
-                fmt::format("{} of {}", extentText(report.now.bodies, report.now.frames),
-                            extentText(report.whole_bodies, report.whole_frames)));
+                fmt::format("{} of {}", extentText(report.progress.bodies, report.progress.frames),
+                            extentText(report.original_bodies, report.original_frames)));
     ui.tooltip(report.file.c_str());
     std::string command = report.command;
     ImGui::SetNextItemWidth(-1);
     ImGui::InputText("##command", &command, ImGuiInputTextFlags_ReadOnly);
     ui.note("command");
     ui.tooltip(command.c_str());
-    if (ui.button("Copy", "Copies the command that shows the fault")) {
+    if (ui.button("Copy", "Copy the command that reproduces the fault")) {
       ImGui::SetClipboardText(report.command.c_str());
     }
     ImGui::SameLine();
-    if (ui.button("Open it", "Looks at the exported recording instead")) {
+    if (ui.button("Open it", "Open the exported recording")) {
       session.openExport(report);
     }
   }
 
   void drawPair() {
     const auto& bodies = session.selection.bodies();
-    const auto& seen = progress->snapshot;
+    const auto& snapshot = progress->snapshot;
     ui.heading("Pair");
-    if (bodies.size() != 2 || !seen || bodies[1] >= seen->boxes->size()) {
+    if (bodies.size() != 2 || !snapshot || bodies[1] >= snapshot->boxes->size()) {
       ui.paragraph("Click a pair above, or select two bodies.");
       return;
     }
     const BoxPair pair{
-        {bodies[0], bodies[1]}, (*seen->boxes)[bodies[0]], (*seen->boxes)[bodies[1]]};
+        {bodies[0], bodies[1]}, (*snapshot->boxes)[bodies[0]], (*snapshot->boxes)[bodies[1]]};
     ui.paragraph(view.answer().pair);
-    const std::string unwanted = unwantedText(seen->scene.filter, pair.bodies);
-    if (!unwanted.empty()) ui.coloured(ui.theme.warning, unwanted);
+    const std::string filtered = filterText(snapshot->scene.filter, pair.bodies);
+    if (!filtered.empty()) ui.coloured(ui.theme.warning, filtered);
     if (isEmpty(pair.a) || isEmpty(pair.b)) {
-      for (const Trail& trail : seen->trails) {
+      for (const Trail& trail : snapshot->trails) {
         if (!isEmpty(trail.boxes.back())) continue;
         ui.coloured(ui.theme.bad, fmt::format("body {}: {}", trail.body, absenceText(trail)));
       }
       return;
     }
-    ui.coloured(overlaps(pair.a, pair.b) ? ui.theme.good : ui.theme.bad, sentenceOn(pair));
+    ui.coloured(overlaps(pair.a, pair.b) ? ui.theme.good : ui.theme.bad, relationText(pair));
     drawPairTable(ui, pair);
     drawIntervals(ui, pair);
     drawHistory(pair);
   }
 
-  /// "they overlap, least on y".
-  static std::string sentenceOn(const BoxPair& pair) {
-    const std::size_t axis = decidingAxis(pair.a, pair.b);
-    const AxisRelation relation = relationOn(axis, pair.a, pair.b);
+  /// Returns a text like "they overlap, least on y".
+  static std::string relationText(const BoxPair& pair) {
+    const std::size_t axis = maxSeparationAxis(pair.a, pair.b);
+    const AxisRelation relation = axisRelation(axis, pair.a, pair.b);
     constexpr NameTable kSentences{
         {NamedValue{AxisRelation::Type::overlap, "they overlap, least on"},
          {AxisRelation::Type::touch, "they overlap, just touching on"},
@@ -255,14 +257,14 @@ class MismatchesPanel final : public Panel {
     }
     const PairTrails trail{trails[0], trails[1]};
     ui.heading("History");
-    const auto began = trail.overlapBegan();
-    if (!began) {
+    const auto overlap_start = trail.overlapStart();
+    if (!overlap_start) {
       ui.faint(fmt::format("frames {} to {}: apart at the end", trails[0].first,
                            trails[0].first + trail.size() - 1));
-    } else if (*began == trails[0].first) {
-      ui.faint(fmt::format("overlapping since frame {} or earlier", *began));
+    } else if (*overlap_start == trails[0].first) {
+      ui.faint(fmt::format("overlapping since frame {} or earlier", *overlap_start));
     } else {
-      ui.faint(fmt::format("overlapping since frame {}", *began));
+      ui.faint(fmt::format("overlapping since frame {}", *overlap_start));
     }
     if (const auto clicked = drawPairHistory(ui, trail)) {
       session.playback.goTo(*clicked);
@@ -272,15 +274,15 @@ class MismatchesPanel final : public Panel {
   void drawStructure() {
     ui.heading("Inside the algorithm");
     ui.toggle("Show structure", session.display.structure,
-              "Draws its cells, nodes or planes in the view, around the pair");
+              "Draw the algorithm's cells, nodes or planes around the pair");
     for (const TrackReport& track : progress->tracks) {
       if (track.spec.number != session.tracks.shown()) continue;
-      if (track.margin > 0) ui.fact("margin", fmt::format("{}", track.margin));
-      const auto& seen = progress->snapshot;
+      if (track.margin > 0) ui.valueRow("margin", fmt::format("{}", track.margin));
+      const auto& snapshot = progress->snapshot;
       const Counts none;
-      const bool is_its = seen && seen->track == track.spec.number;
-      for (const auto* counts : {&track.setup, is_its ? &seen->counters : &none}) {
-        for (const auto& [name, count] : *counts) ui.fact(name.c_str(), std::to_string(count));
+      const bool is_shown = snapshot && snapshot->track == track.spec.number;
+      for (const auto* counts : {&track.setup, is_shown ? &snapshot->counters : &none}) {
+        for (const auto& [name, count] : *counts) ui.valueRow(name.c_str(), std::to_string(count));
       }
     }
   }
@@ -288,8 +290,8 @@ class MismatchesPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Mismatches", DockArea::right,
-                               "Pairs that are missed, false or invalid, and why",
+extern const PanelSpec spec = {"Mismatches", DockArea::right,
+                               "Find missed, false and invalid pairs, and their causes",
                                make<MismatchesPanel>};
 
 }  // namespace broadmark::panels::mismatches

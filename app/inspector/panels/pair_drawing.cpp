@@ -13,8 +13,8 @@ Rgb relationColour(const Palette& theme, AxisRelation::Type type) {
   return theme.*kColours[static_cast<std::size_t>(type)];
 }
 
-/// The shortest digits that give the same float again.
-std::string exactly(float value) { return fmt::format("{}", value); }
+/// Returns the shortest text that parses to the same float.
+std::string exactText(float value) { return fmt::format("{}", value); }
 
 void cell(Ui& ui, Rgb rgb, const std::string& upper, const std::string& lower) {
   ImGui::TableNextColumn();
@@ -38,11 +38,11 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
                                      ImGuiTableFlags_SizingFixedFit |
                                      ImGuiTableFlags_NoHostExtendX | ImGuiTableFlags_ScrollX;
   const float line = ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y;
-  // How both stand to each other is a column, or, where the panel is narrow, a line below.
+  // The relation of both is a column or, in a narrow panel, a line below.
   const bool narrow = ImGui::GetContentRegionAvail().x < 270 * ui.scale;
   const float height = (narrow ? 10 : 7) * line + 4 * ui.scale;
   if (ImGui::BeginTable("pair", narrow ? 3 : 4, kFlags, {0, height})) {
-    const std::size_t deciding = decidingAxis(pair.a, pair.b);
+    const std::size_t deciding = maxSeparationAxis(pair.a, pair.b);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TableNextColumn();
@@ -50,16 +50,17 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
     ImGui::TableNextColumn();
     ui.coloured(ui.theme.second, fmt::format("body {}", pair.bodies.b));
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      const AxisRelation relation = relationOn(axis, pair.a, pair.b);
+      const AxisRelation relation = axisRelation(axis, pair.a, pair.b);
       const Rgb rgb = relationColour(ui.theme, relation.type);
       ImGui::TableNextRow();
       cell(ui, axis == deciding ? ui.theme.accent : ui.theme.faint, kAxes[axis], "");
-      if (axis == deciding) ui.tooltip("The axis that decides");
+      if (axis == deciding)
+        ui.tooltip("Deciding axis: the largest gap or, without a gap, the smallest overlap");
       const std::string kind(kRelations.nameOf(relation.type));
-      const std::string extent = exactly(std::abs(static_cast<float>(relation.gap)));
-      cell(ui, ui.theme.text, exactly(pair.a.min[axis]), exactly(pair.a.max[axis]));
+      const std::string extent = exactText(std::abs(static_cast<float>(relation.gap)));
+      cell(ui, ui.theme.text, exactText(pair.a.min[axis]), exactText(pair.a.max[axis]));
       if (narrow) ui.coloured(rgb, kind);
-      cell(ui, ui.theme.text, exactly(pair.b.min[axis]), exactly(pair.b.max[axis]));
+      cell(ui, ui.theme.text, exactText(pair.b.min[axis]), exactText(pair.b.max[axis]));
       if (narrow) ui.coloured(rgb, extent);
       if (!narrow) cell(ui, rgb, kind, extent);
     }
@@ -94,10 +95,10 @@ void drawIntervals(Ui& ui, const BoxPair& pair) {
       return origin.x + label + width / 2 + static_cast<float>(offset);
     };
     const float top = origin.y + static_cast<float>(axis) * row + 4 * unit;
-    const AxisRelation relation = relationOn(axis, pair.a, pair.b);
+    const AxisRelation relation = axisRelation(axis, pair.a, pair.b);
     const Rgb rgb = relationColour(ui.theme, relation.type);
     labelAt({origin.x, top + bar - ImGui::GetTextLineHeight() / 2}, ui.theme.faint, kAxes[axis]);
-    // What lies between the two, or is common to them; never too thin to be seen.
+    // The gap or overlap of the intervals, at least 2 units wide.
     float low = x(std::max(pair.a.min[axis], pair.b.min[axis]));
     float high = x(std::min(pair.a.max[axis], pair.b.max[axis]));
     if (low > high) std::swap(low, high);
@@ -138,16 +139,16 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
     return std::max(left(i) + unit, left(i + 1) - (step > 3 * unit ? unit : 0));
   };
 
-  const std::optional<std::uint32_t> began = trail.overlapBegan();
-  if (began) {
-    plainRect({left(*began - trail.a.first), origin.y},
+  const std::optional<std::uint32_t> overlap_start = trail.overlapStart();
+  if (overlap_start) {
+    plainRect({left(*overlap_start - trail.a.first), origin.y},
               {origin.x + label + width, origin.y + height}, ui.theme.good, 0.10F);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    double most = 0;
+    double max_gap = 0;
     for (std::size_t i = 0; i < frames; ++i) {
-      const double gap = std::abs(relationOn(axis, trail.a.boxes[i], trail.b.boxes[i]).gap);
-      if (std::isfinite(gap)) most = std::max(most, gap);
+      const double gap = std::abs(axisRelation(axis, trail.a.boxes[i], trail.b.boxes[i]).gap);
+      if (std::isfinite(gap)) max_gap = std::max(max_gap, gap);
     }
     const float top = origin.y + static_cast<float>(axis) * row;
     const float zero = top + row / 2;
@@ -155,10 +156,10 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
     plainRect({origin.x + label, zero}, {origin.x + label + width, zero + 1}, ui.theme.faint, 0.4F);
     for (std::size_t i = 0; i < frames; ++i) {
       if (isEmpty(trail.a.boxes[i]) || isEmpty(trail.b.boxes[i])) continue;
-      const AxisRelation relation = relationOn(axis, trail.a.boxes[i], trail.b.boxes[i]);
-      const double share = most > 0 ? relation.gap / most : 0;
+      const AxisRelation relation = axisRelation(axis, trail.a.boxes[i], trail.b.boxes[i]);
+      const double share = max_gap > 0 ? relation.gap / max_gap : 0;
       const float extent = static_cast<float>(share) * (row / 2 - 2 * unit);
-      // Never too small to be seen.
+      // At least 1.5 units high.
       const float end =
           extent < 0 ? zero + std::max(-extent, 1.5F * unit) : zero - std::max(extent, 1.5F * unit);
       plainRect({left(i), std::min(zero, end)}, {right(i), std::max(zero, end)},
@@ -189,9 +190,9 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (isEmpty(trail.a.boxes[at]) || isEmpty(trail.b.boxes[at])) break;
-    const AxisRelation relation = relationOn(axis, trail.a.boxes[at], trail.b.boxes[at]);
+    const AxisRelation relation = axisRelation(axis, trail.a.boxes[at], trail.b.boxes[at]);
     text += fmt::format("\n{}: {} {}", kAxes[axis], kRelations.nameOf(relation.type),
-                        exactly(std::abs(static_cast<float>(relation.gap))));
+                        exactText(std::abs(static_cast<float>(relation.gap))));
   }
   ImGui::SetTooltip("%s", text.c_str());
   if (!ImGui::IsMouseClicked(0)) return {};

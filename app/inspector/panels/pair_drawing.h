@@ -1,4 +1,4 @@
-// Two boxes in numbers and pictures: their intervals on every axis, and how these changed.
+// Drawings of a pair of boxes: the intervals on each axis, and their history.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ struct BoxPair {
   Aabb b;
 };
 
-/// Their intervals as numbers, to the last digit, and how they lie to each other.
+/// Draws a table of the exact intervals, with the gap or overlap on each axis.
 void drawPairTable(Ui& ui, const BoxPair& pair);
-/// Their intervals as bars, one axis below the other, all at one scale.
+/// Draws the intervals as bars, one axis below the other, all at one scale.
 void drawIntervals(Ui& ui, const BoxPair& pair);
-/// Per axis and frame the gap (upwards) or overlap (downwards), and which body moved; the last
-/// frame is at the right end. Returns the frame that is clicked.
+/// Draws per axis and frame the gap (upwards) or overlap (downwards), and per body the frames in
+/// which it moved; the last frame is at the right end. Returns the clicked frame.
 std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail);
 
 }  // namespace broadmark

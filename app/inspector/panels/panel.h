@@ -1,4 +1,4 @@
-// A part of the window.
+// Panels: the tabs of the docked areas.
 #pragma once
 
 #include <memory>
@@ -15,30 +15,30 @@ namespace broadmark {
 
 class View;
 
-/// The tab bar of a panel.
+/// The area of the window in which a panel is docked.
 enum class DockArea { left, right, bottom };
 inline constexpr NameTable kDockAreas{
     {NamedValue{DockArea::left, "left"}, {DockArea::right, "right"}, {DockArea::bottom, "bottom"}}};
 
-/// What a panel draws with and works on, which outlives it.
+/// The objects that a panel uses; all outlive it.
 struct PanelContext {
   Ui& ui;
   Session& session;
   View& view;
-  FileDialog& files;                      ///< to ask for a file
-  const RunProgress* progress = nullptr;  ///< of the picture being drawn
+  FileDialog& files;
+  const RunProgress* progress = nullptr;  ///< in the current picture
 
-  /// Of the curves of `progress`'s tracks.
+  /// Returns the curve colours of `progress`'s tracks.
   [[nodiscard]] std::vector<Rgb> trackColours() const;
-  /// Draws the frames that `zoom` shows into the rest of the panel. The mouse moves them, and goes
-  /// to one if `plays` says that they are those of the playback.
+  /// Plots the frames in the range of `zoom`, filling the panel. The mouse zooms and pans; if
+  /// `is_playback`, the plot has a playhead, and a click seeks.
   PlotResult plotFrames(const char* name, const std::vector<PlotCurve>& curves, PlotOptions options,
-                        Timeline& zoom, bool plays = true) const;
-  /// A button as wide as the panel.
+                        Timeline& zoom, bool is_playback = true) const;
+  /// Draws a button as wide as the panel.
   bool wideButton(const char* label, const char* tooltip, bool enabled = true) const;
 };
 
-/// Several buttons side by side that share the width.
+/// Lays out buttons of equal width, `count` per row.
 class ButtonRow {
  public:
   ButtonRow(Ui& ui, int count);
@@ -51,15 +51,14 @@ class ButtonRow {
   float width_;
 };
 
-/// One implementation per file, listed in CMakeLists.txt. Keeps what only it needs between two
-/// pictures.
+/// Implemented by one class per file; holds the state that only its panel needs.
 class Panel : protected PanelContext {
  public:
   explicit Panel(const PanelContext& context) : PanelContext(context) {}
   virtual ~Panel() = default;
 
-  void drawOf(const RunProgress& seen) {
-    progress = &seen;
+  void drawOf(const RunProgress& current) {
+    progress = &current;
     draw();
   }
 
@@ -67,8 +66,8 @@ class Panel : protected PanelContext {
   virtual void draw() = 0;
 };
 
-/// What stands on a panel's tab, and how the panel is made.
-struct PanelKind {
+/// A panel's tab and factory.
+struct PanelSpec {
   const char* name;
   DockArea area;
   const char* tooltip;
@@ -79,10 +78,10 @@ std::unique_ptr<Panel> make(const PanelContext& context) {
   return std::make_unique<PanelType>(context);
 }
 
-struct PanelTab : PanelKind {
+struct PanelTab : PanelSpec {
   std::unique_ptr<Panel> panel;
 };
-/// All of them, in the order of the list in CMakeLists.txt.
+/// Makes all panels, in the order of the list in CMakeLists.txt.
 std::vector<PanelTab> makePanels(const PanelContext& context);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// The list of panels, and what they share.
+// The list of panels, and their shared helpers.
 
 #include <algorithm>
 #include <cmath>
@@ -16,17 +16,19 @@ std::vector<Rgb> PanelContext::trackColours() const {
 }
 
 PlotResult PanelContext::plotFrames(const char* name, const std::vector<PlotCurve>& curves,
-                                    PlotOptions options, Timeline& zoom, bool plays) const {
+                                    PlotOptions options, Timeline& zoom, bool is_playback) const {
   options.first = zoom.first();
   options.last = zoom.last();
-  if (plays) options.playhead = session.playback.frame();
-  const ImVec2 room = ImGui::GetContentRegionAvail();
-  const PlotResult done = drawPlot(name, curves, options, room.x, room.y);
+  if (is_playback) options.playhead = session.playback.frame();
+  const ImVec2 size = ImGui::GetContentRegionAvail();
+  const PlotResult result = drawPlot(name, curves, options, size.x, size.y);
   ui.note(name);
-  if (done.zoom != 0) zoom.zoom(done.zoom, done.zoom_at);
-  if (done.moved != 0) zoom.move(done.moved);
-  if (done.clicked_frame && plays) session.playback.goTo(std::llround(*done.clicked_frame));
-  return done;
+  if (result.zoom != 0) zoom.zoom(result.zoom, result.zoom_at);
+  if (result.moved != 0) zoom.scroll(result.moved);
+  if (result.clicked_frame && is_playback) {
+    session.playback.goTo(std::llround(*result.clicked_frame));
+  }
+  return result;
 }
 
 bool PanelContext::wideButton(const char* label, const char* tooltip, bool enabled) const {
@@ -35,8 +37,8 @@ bool PanelContext::wideButton(const char* label, const char* tooltip, bool enabl
 
 ButtonRow::ButtonRow(Ui& ui, int count) : ui_(ui), count_(count) {
   const float gaps = ImGui::GetStyle().ItemSpacing.x * static_cast<float>(count - 1);
-  const float room = ImGui::GetContentRegionAvail().x - gaps;
-  width_ = std::max(std::floor(room / static_cast<float>(count)), 1.0F);
+  const float width = ImGui::GetContentRegionAvail().x - gaps;
+  width_ = std::max(std::floor(width / static_cast<float>(count)), 1.0F);
 }
 
 bool ButtonRow::button(const char* label, const char* tooltip, bool enabled) {
@@ -46,17 +48,17 @@ bool ButtonRow::button(const char* label, const char* tooltip, bool enabled) {
 
 #define PANEL(name)            \
   namespace panels::name {     \
-  extern const PanelKind kind; \
+  extern const PanelSpec spec; \
   }
 #include "inspector_panels.inc"
 #undef PANEL
 
 std::vector<PanelTab> makePanels(const PanelContext& context) {
-  std::vector<PanelTab> made;
-#define PANEL(name) made.push_back({panels::name::kind, panels::name::kind.make(context)});
+  std::vector<PanelTab> tabs;
+#define PANEL(name) tabs.push_back({panels::name::spec, panels::name::spec.make(context)});
 #include "inspector_panels.inc"
 #undef PANEL
-  return made;
+  return tabs;
 }
 
 }  // namespace broadmark

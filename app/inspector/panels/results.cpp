@@ -1,4 +1,4 @@
-// What each algorithm did in this frame, side by side.
+// Times and answers of the algorithms in the current frame, side by side.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 namespace broadmark::panels::results {
 namespace {
 
-/// Mean total of the undisturbed frames, in nanoseconds; below 0: none.
+/// Returns the mean total of the undisturbed frames, in nanoseconds; -1 if there are none.
 double meanTotal(const TrackReport& track) {
   double sum = 0;
   std::uint64_t count = 0;
@@ -40,7 +40,6 @@ class ResultsPanel final : public Panel {
   }
 
  private:
-  /// The phases are called as everywhere.
   static std::vector<std::string> columnNames() {
     std::vector<std::string> names = {"algorithm", "status", "total",   "mean",         "pairs",
                                       "missed",    "false",  "invalid", "allowed extra"};
@@ -62,9 +61,9 @@ class ResultsPanel final : public Panel {
       session.tracks.show(track.spec.number);
     }
     const auto time = [&](Phase phase, const char* mark) {
-      const bool known = record != nullptr;
-      ui.cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark
-                    : "–");
+      ui.cell(record == nullptr
+                  ? "–"
+                  : withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark);
     };
     ui.cell(statusName(track.status), track.status == Status::ok ? ui.theme.good : ui.theme.bad);
     ui.tooltip(track.reason.c_str());
@@ -74,11 +73,11 @@ class ResultsPanel final : public Panel {
     const double mean = meanTotal(track);
     ui.cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
     ui.cell(record == nullptr ? "–" : std::to_string(record->counts[FrameCount::pairs]));
-    for (const FrameCount which : {FrameCount::missed, FrameCount::false_pairs, FrameCount::invalid,
-                                   FrameCount::allowed_extra}) {
+    for (const FrameCount type : {FrameCount::missed, FrameCount::false_pairs, FrameCount::invalid,
+                                  FrameCount::allowed_extra}) {
       const bool checked = record != nullptr && record->checked;
-      const std::uint64_t count = checked ? record->counts[which] : 0;
-      const bool bad = count > 0 && which != FrameCount::allowed_extra;
+      const std::uint64_t count = checked ? record->counts[type] : 0;
+      const bool bad = count > 0 && type != FrameCount::allowed_extra;
       ui.cell(checked ? std::to_string(count) : "–", bad ? ui.theme.bad : ui.theme.text);
     }
     for (const auto& [phase, name] : kPhases.entries) {
@@ -90,7 +89,8 @@ class ResultsPanel final : public Panel {
 
 }  // namespace
 
-extern const PanelKind kind = {"Results", DockArea::bottom, "What each algorithm did in this frame",
+extern const PanelSpec spec = {"Results", DockArea::bottom,
+                               "Times and answers of the algorithms in this frame",
                                make<ResultsPanel>};
 
 }  // namespace broadmark::panels::results

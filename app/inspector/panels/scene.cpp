@@ -1,4 +1,4 @@
-// What is open and with which parameters, and simulating a built-in scene.
+// The open source and its parameters; simulation of built-in scenes.
 
 #include <algorithm>
 #include <memory>
@@ -16,13 +16,14 @@ class ScenePanel final : public Panel {
 
   void draw() override {
     const bool draft_is_open = session.draft.isOpen();
-    const bool is_new = seen_ != session.playback.source();
-    seen_ = session.playback.source();
-    if (is_new) parameters_ = sceneParametersOf(session.playback.source().get());
-    if (seen_) drawOpen(draft_is_open);
-    // The parameters of a simulation that might be are not to be taken for those of what is open.
+    const bool is_new = source_ != session.playback.source();
+    source_ = session.playback.source();
+    if (is_new) parameters_ = sceneParametersOf(source_.get());
+    if (source_) drawOpen(draft_is_open);
+    // Collapsed for other sources, to which the draft's parameters do not apply.
     if (is_new) {
-      ImGui::SetNextItemOpen(!seen_ || draft_is_open || seen_->origin == FrameOrigin::simulation);
+      ImGui::SetNextItemOpen(!source_ || draft_is_open ||
+                             source_->origin == FrameOrigin::simulation);
     }
     const bool open =
         ImGui::CollapsingHeader(draft_is_open ? "Its parameters###draft" : "New simulation###draft",
@@ -35,50 +36,50 @@ class ScenePanel final : public Panel {
  private:
   void drawOpen(bool draft_is_open) const {
     ui.heading("Open");
-    ui.paragraph(sourceText(seen_.get()));
+    ui.paragraph(sourceText(source_.get()));
     ui.note("open");
     if (draft_is_open) return;
-    for (const auto& [name, value] : parameters_) ui.fact(name.c_str(), value);
+    for (const auto& [name, value] : parameters_) ui.valueRow(name.c_str(), value);
     if (!parameters_.empty()) return;
-    ui.faintParagraph(seen_->origin == FrameOrigin::authored
-                          ? "Its parameters stand in the panel Author."
-                          : "With which parameters it was made is not known.");
+    ui.faintParagraph(source_->origin == FrameOrigin::authored
+                          ? "Its parameters are in the panel Author."
+                          : "Its parameters are unknown.");
   }
 
   void drawDraft() {
     chooseScene();
     ImGui::Spacing();
     if (wideButton("Simulate",
-                   "Restarts the scene with these parameters; frames are simulated as they are "
+                   "Restart the scene with these parameters; frames are simulated as they are "
                    "shown")) {
-      session.notices.attempt([&] { session.draft.simulate(); });
+      session.notices.catchErrors([&] { session.draft.simulate(); });
     }
     ui.heading("Parameters");
-    session.notices.attempt([&] { ui.parameters(session.draft.scene()); });
+    session.notices.catchErrors([&] { ui.parameters(session.draft.scene()); });
   }
 
   void chooseScene() {
     const std::vector<SceneListing> scenes = builtinScenes();
     std::vector<std::string> ids;
     for (const SceneListing& scene : scenes) ids.push_back(scene.id);
-    const auto& present = session.draft.scene().listing().id;
-    auto chosen = static_cast<std::size_t>(std::ranges::find(ids, present) - ids.begin());
-    if (ui.combo("scene", chosen, ids, "What happens")) {
-      session.notices.attempt([&] { session.draft.choose(ids[chosen]); });
+    const auto& current = session.draft.scene().listing().id;
+    auto chosen = static_cast<std::size_t>(std::ranges::find(ids, current) - ids.begin());
+    if (ui.combo("scene", chosen, ids, "Scene to simulate")) {
+      session.notices.catchErrors([&] { session.draft.choose(ids[chosen]); });
     }
     if (chosen < scenes.size()) {
       ui.faintParagraph(scenes[chosen].summary);
     }
   }
 
-  std::shared_ptr<const FrameProviderRequest> seen_;  ///< what was open in the last picture
-  ParameterValues parameters_;                        ///< of the open scene; empty if unknown
+  std::shared_ptr<const FrameProviderRequest> source_;  ///< the open source
+  ParameterValues parameters_;                          ///< of the open source; empty if unknown
 };
 
 }  // namespace
 
-extern const PanelKind kind = {"Scene", DockArea::left,
-                               "What is open; built-in scenes: choose, adjust, simulate",
-                               make<ScenePanel>};
+extern const PanelSpec spec = {
+    "Scene", DockArea::left, "Show the open source; choose, configure and simulate built-in scenes",
+    make<ScenePanel>};
 
 }  // namespace broadmark::panels::scene

@@ -1,4 +1,4 @@
-// What is known of the selected bodies, and of the scene.
+// Properties of the selected bodies, and of the scene.
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ class SelectionPanel final : public Panel {
           "Nothing is open: press Simulate in the panel Scene, or open or drop a file.");
       return;
     }
-    goTo();
+    drawIdInput();
     if (session.selection.bodies().empty()) {
       drawScene(progress->snapshot);
     } else if (session.selection.bodies().size() == 1) {
@@ -38,12 +38,12 @@ class SelectionPanel final : public Panel {
   }
 
  private:
-  void goTo() {
+  void drawIdInput() {
     if (progress->scene.objects == 0) return;
-    if (!ui.text("body", wanted_, "17, 40-50")) return;
-    session.notices.attempt([&] {
-      session.selection.select(parseIds(wanted_, "body", progress->scene.objects - 1));
-      session.selection.flyThere();
+    if (!ui.text("body", ids_text_, "17, 40-50")) return;
+    session.notices.catchErrors([&] {
+      session.selection.select(parseIds(ids_text_, "body", progress->scene.objects - 1));
+      session.selection.flyToSelection();
     });
   }
 
@@ -58,13 +58,13 @@ class SelectionPanel final : public Panel {
       return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ui.fact(kAxes[axis], fmt::format("{:.5g} … {:.5g}", box.min[axis], box.max[axis]));
+      ui.valueRow(kAxes[axis], fmt::format("{:.5g} … {:.5g}", box.min[axis], box.max[axis]));
     }
-    ui.fact("size", fmt::format("{:.4g} × {:.4g} × {:.4g}", box.max[0] - box.min[0],
-                                box.max[1] - box.min[1], box.max[2] - box.min[2]));
-    ui.fact("overlaps", std::to_string(snapshot.overlaps[body]));
+    ui.valueRow("size", fmt::format("{:.4g} × {:.4g} × {:.4g}", box.max[0] - box.min[0],
+                                    box.max[1] - box.min[1], box.max[2] - box.min[2]));
+    ui.valueRow("overlaps", std::to_string(snapshot.overlaps[body]));
     if (snapshot.structure && body < snapshot.structure->tests().size()) {
-      ui.fact("tests", std::to_string(snapshot.structure->tests()[body]));
+      ui.valueRow("tests", std::to_string(snapshot.structure->tests()[body]));
     }
     ui.heading("Overlaps with");
     ImGui::BeginChild("partners", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
@@ -73,27 +73,27 @@ class SelectionPanel final : public Panel {
       if (pair.a != body && pair.b != body) continue;
       if (listed++ == kListedPartners) break;
       const std::uint32_t other = pair.a == body ? pair.b : pair.a;
-      if (ui.selectable(fmt::format("{}", other).c_str(), false)) session.selection.visit(pair);
+      if (ui.selectable(fmt::format("{}", other).c_str(), false)) session.selection.flyToPair(pair);
     }
     ImGui::EndChild();
   }
 
   void drawGroups(const CollisionFilter& filter, std::uint32_t body) {
     const BodyGroups groups = filter.groupsOf(body);
-    if (!filter.layers().empty()) ui.fact("layer", std::to_string(groups.layer));
-    if (!filter.worlds().empty()) ui.fact("world", std::to_string(groups.world));
+    if (!filter.layers().empty()) ui.valueRow("layer", std::to_string(groups.layer));
+    if (!filter.worlds().empty()) ui.valueRow("world", std::to_string(groups.world));
     if (groups.tags == BodyGroups::kNoTags) return;
     std::string tags;
     for (const std::uint32_t tag : groups.tags) {
       if (tag != BodyGroups::kNoTag) tags += fmt::format("{}{}", tags.empty() ? "" : ", ", tag);
     }
-    ui.fact("tags", tags);
+    ui.valueRow("tags", tags);
   }
 
   void drawBodies(const Snapshot& snapshot) {
     const std::vector<std::uint32_t> bodies = session.selection.bodies();
     ui.heading(counted(bodies.size(), "body", "bodies").c_str());
-    if (ui.button("Fly there", "(F)")) session.selection.fly_to = bodies;
+    if (ui.button("Fly there", "Move the camera there (F)")) session.selection.fly_to = bodies;
     ImGui::BeginChild("bodies", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;
@@ -107,44 +107,45 @@ class SelectionPanel final : public Panel {
     ImGui::EndChild();
   }
 
-  /// Statistics take a pass over all boxes: once per frame, and not for what is in motion.
+  /// The changes take a pass over all boxes: they are computed once per snapshot.
   void drawScene(const std::shared_ptr<const Snapshot>& snapshot) {
     ui.heading("Scene");
-    ui.fact("name", snapshot->scene.name);
-    ui.fact("object type", snapshot->scene.object_type);
+    ui.valueRow("name", snapshot->scene.name);
+    ui.valueRow("object type", snapshot->scene.object_type);
     const bool changes = !snapshot->scene.all_present;
-    ui.fact("bodies", changes ? fmt::format("{} of {}", snapshot->present, snapshot->boxes->size())
+    ui.valueRow("bodies", changes
+                              ? fmt::format("{} of {}", snapshot->present, snapshot->boxes->size())
                               : std::to_string(snapshot->present));
-    ui.fact("pairs", std::to_string(snapshot->pairs.size()));
+    ui.valueRow("pairs", std::to_string(snapshot->pairs.size()));
     const float side = snapshot->scene.world.max[0] - snapshot->scene.world.min[0];
-    ui.fact("world", fmt::format("{:.4g} wide", side));
-    if (described_ != snapshot) {
-      described_ = snapshot;
+    ui.valueRow("world", fmt::format("{:.4g} wide", side));
+    if (changes_snapshot_ != snapshot) {
+      changes_snapshot_ = snapshot;
       changes_ = {};
       if (snapshot->boxes_before) {
         changes_ = changesBetween(*snapshot->boxes_before, *snapshot->boxes);
       }
     }
-    const auto fact = [&](const char* name, double bodies) {
-      ui.fact(name, fmt::format("{:.0f}", bodies));
+    const auto count = [&](const char* name, double bodies) {
+      ui.valueRow(name, fmt::format("{:.0f}", bodies));
     };
-    fact("moving", changes_.changed - changes_.appeared - changes_.vanished);
+    count("moving", changes_.changed - changes_.appeared - changes_.vanished);
     if (changes) {
-      fact("appeared", changes_.appeared);
-      fact("vanished", changes_.vanished);
+      count("appeared", changes_.appeared);
+      count("vanished", changes_.vanished);
     }
     ImGui::Spacing();
     ui.faintParagraph("Click a body to select it; drag with Shift to select several.");
   }
 
-  std::string wanted_;  ///< the ids searched for
-  std::shared_ptr<const Snapshot> described_;
-  Changes changes_;  ///< in the frame described
+  std::string ids_text_;
+  std::shared_ptr<const Snapshot> changes_snapshot_;
+  Changes changes_;  ///< in changes_snapshot_
 };
 
 }  // namespace
 
-extern const PanelKind kind = {"Bodies", DockArea::right,
+extern const PanelSpec spec = {"Bodies", DockArea::right,
                                "The selected bodies, and the scene as a whole",
                                make<SelectionPanel>};
 

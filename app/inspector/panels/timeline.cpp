@@ -1,5 +1,4 @@
-// The whole recording over its frames: times of all algorithms as curves, live, with pairs, bodies
-// and marks at what to look at.
+// Live plot of the whole recording: times, pairs, bodies, marks at wrong and disturbed frames.
 
 #include <fmt/format.h>
 
@@ -18,8 +17,8 @@
 namespace broadmark::panels::timeline {
 namespace {
 
-constexpr float kPlotShare = 0.56F;  // of the width, beside a span's statistics
-constexpr float kRoomForBoth = 600;  // units: narrower, it is either the one or the other
+constexpr float kPlotShare = 0.56F;      // of the width; a span's statistics get the rest
+constexpr float kMinWidthForBoth = 600;  // units; a narrower panel shows one of both
 
 class TimelinePanel final : public Panel {
  public:
@@ -28,7 +27,7 @@ class TimelinePanel final : public Panel {
   void draw() override {
     if (progress->tracks.empty()) {
       ui.faintParagraph(
-          "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
+          "Add algorithms in the panel Algorithms to see their frame times as curves.");
     }
     if (!progress->source) return;
     drawControls();
@@ -38,10 +37,10 @@ class TimelinePanel final : public Panel {
       return;
     }
     const SplitPane parts{
-        .share = kPlotShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = span_alone_};
+        .share = kPlotShare, .min_width = kMinWidthForBoth * ui.scale, .second_only = span_only_};
     if (!parts.both()) {
-      Ui::besideIfRoom(50 * ui.scale);
-      ui.toggle("Span", span_alone_, "What the span took, in place of the curves");
+      Ui::sameLineIfFits(50 * ui.scale);
+      ui.toggle("Span", span_only_, "Show the span's statistics instead of the curves");
     }
     parts.draw(curves, [&] { drawSpan(); });
   }
@@ -51,21 +50,21 @@ class TimelinePanel final : public Panel {
     Timeline& timeline = session.timeline;
     std::vector<std::string> names = {"pairs"};
     for (const std::string& phase : kPhases.names()) names.push_back(phase);
-    ui.combo("##quantity", quantity_, names, "What of the algorithms is plotted", 150 * ui.scale);
-    Ui::besideIfRoom(110 * ui.scale);
+    ui.combo("##quantity", quantity_, names, "Quantity to plot", 150 * ui.scale);
+    Ui::sameLineIfFits(110 * ui.scale);
     ui.checkbox("logarithmic", logarithmic_);
-    Ui::besideIfRoom(65 * ui.scale);
+    Ui::sameLineIfFits(65 * ui.scale);
     ui.checkbox("pairs", shows_pairs_,
-                "Number of overlapping pairs: the thin line, with its scale on the right");
+                "Plot the number of overlapping pairs as a thin line, with its scale on the right");
     if (progress->population.size() > 0) {
-      Ui::besideIfRoom(75 * ui.scale);
-      ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
+      Ui::sameLineIfFits(75 * ui.scale);
+      ui.checkbox("bodies", shows_bodies_, "Plot the number of bodies present as an area");
     }
-    Ui::besideIfRoom(90 * ui.scale);
-    if (ui.button("All frames", "Undoes zooming with the wheel", 0, timeline.zoomed())) {
+    Ui::sameLineIfFits(90 * ui.scale);
+    if (ui.button("All frames", "Reset the zoom", 0, timeline.zoomed())) {
       timeline.showAll();
     }
-    Ui::besideIfRoom(240 * ui.scale);
+    Ui::sameLineIfFits(240 * ui.scale);
     drawBudget();
   }
 
@@ -75,7 +74,7 @@ class TimelinePanel final : public Panel {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
     ui.entry("budget", session.timeline.budget_ms, 0, 1e5,
-             "What a frame may take, in milliseconds: a line in the plot; 0: none");
+             "Frame budget in milliseconds, drawn as a line in the plot; 0: none");
     ImGui::SameLine();
     std::uint64_t over = 0;
     for (const TrackReport& track : progress->tracks) {
@@ -85,32 +84,32 @@ class TimelinePanel final : public Panel {
     ui.note("over");
   }
 
-  /// What the algorithms took in the selected span.
+  /// Draws the statistics of the algorithms in the selected span.
   void drawSpan() {
     Timeline& timeline = session.timeline;
-    if (!timeline.span()) return;  // it was cleared in this picture
+    if (!timeline.span()) return;  // cleared in this picture
     const auto [first, last] = *timeline.span();
     ui.plain(fmt::format("frames {} to {}", first, last));
     ImGui::SameLine();
-    if (ui.button("Show", "Zooms to the span")) timeline.showSpan();
+    if (ui.button("Show", "Zoom to the span")) timeline.showSpan();
     ImGui::SameLine();
-    if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
+    if (ui.button("Clear", "Clear the span (Escape)")) timeline.clearSpan();
     summarise({first, last});
     drawStatistics();
     const std::vector<TrackReport>& tracks = progress->tracks;
-    const TrackReport* const shown = trackOf(tracks, session.tracks.shown());
-    const std::ptrdiff_t which = shown == nullptr ? 0 : shown - tracks.data();
-    drawHistogram(ui, statistics_.at(static_cast<std::size_t>(which)).values,
+    const TrackReport* const shown = findTrack(tracks, session.tracks.shown());
+    const std::ptrdiff_t index = shown == nullptr ? 0 : shown - tracks.data();
+    drawHistogram(ui, statistics_.at(static_cast<std::size_t>(index)).values,
                   [this](double value) { return valueText(value); });
   }
 
-  /// Sorting long spans takes a while: not for each picture.
+  /// Throttled, because sorting long spans takes a while.
   void summarise(FrameSpan span) {
     const auto& tracks = progress->tracks;
     const double now = ImGui::GetTime();
-    if (summarised_ == span && statistics_.size() == tracks.size() && now < summarise_next_) return;
+    if (summarised_ == span && statistics_.size() == tracks.size() && now < next_summary_) return;
     summarised_ = span;
-    summarise_next_ = now + 0.25;
+    next_summary_ = now + 0.25;
     statistics_.clear();
     for (const TrackReport& track : tracks) {
       statistics_.push_back(statisticsOf(valuesOf(track), track.curves.disturbed, span));
@@ -123,21 +122,21 @@ class TimelinePanel final : public Panel {
     const float height =
         ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(tracks.size()) + 1.8F);
     if (!ui.beginTable("statistics",
-                       {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}, 1,
+                       {"algorithm", "median", "5 %", "95 %", "99 %", "max", "sum", "frames"}, 1,
                        height)) {
       return;
     }
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      const SpanStatistics& of = statistics_[i];
+      const SpanStatistics& span = statistics_[i];
       ImGui::TableNextRow();
       ui.cell(caseName(tracks[i].spec.test_case), colours[i]);
       for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
-        ui.cell(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
+        ui.cell(span.values.empty() ? "–" : valueText(quantile(span.values, share)));
       }
-      ui.cell(of.values.empty() ? "–" : valueText(of.total));
-      ui.cell(std::to_string(of.values.size()));
-      if (of.disturbed > 0) {
-        ui.tooltip(fmt::format("and {} left out as disturbed", of.disturbed).c_str());
+      ui.cell(span.values.empty() ? "–" : valueText(span.total));
+      ui.cell(std::to_string(span.values.size()));
+      if (span.disturbed > 0) {
+        ui.tooltip(fmt::format("and {} left out as disturbed", span.disturbed).c_str());
       }
     }
     ImGui::EndTable();
@@ -147,7 +146,7 @@ class TimelinePanel final : public Panel {
     return withPrefix(value, quantity_ == 0 ? "" : "s");
   }
 
-  /// What is plotted.
+  /// Returns the plotted quantity.
   [[nodiscard]] const FrameValues& valuesOf(const TrackReport& track) const {
     return quantity_ == 0 ? track.curves.pairs : track.curves.seconds[quantity_ - 1];
   }
@@ -184,32 +183,32 @@ class TimelinePanel final : public Panel {
         .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,
         .thin = shows_pairs_ ? &pairs : nullptr,
         .marks = {wrong, disturbed}};
-    const PlotResult done = plotFrames("plot", curves, options, timeline);
-    if (done.dragged) timeline.select((*done.dragged)[0], (*done.dragged)[1]);
-    if (done.toggled) toggle(progress->tracks[*done.toggled].spec.number);
+    const PlotResult result = plotFrames("plot", curves, options, timeline);
+    if (result.dragged) timeline.select((*result.dragged)[0], (*result.dragged)[1]);
+    if (result.toggled) toggle(progress->tracks[*result.toggled].spec.number);
   }
 
   void toggle(int track) {
     if (hidden_.erase(track) == 0) hidden_.insert(track);
   }
 
-  std::size_t quantity_ = kPhases.entries.size();  ///< 0: pairs; then the phases; the last: total
+  std::size_t quantity_ = kPhases.entries.size();  ///< 0: pairs; then phases, total last
   bool logarithmic_ = true;
   bool shows_pairs_ = true;
   bool shows_bodies_ = true;
-  bool span_alone_ = false;
+  bool span_only_ = false;
   std::set<int> hidden_;
-  std::vector<SpanStatistics> statistics_;  ///< of the tracks
-  FrameSpan summarised_;                    ///< of which span
-  double summarise_next_ = 0;               ///< seconds of the user interface
+  std::vector<SpanStatistics> statistics_;  ///< by track
+  FrameSpan summarised_;                    ///< span of statistics_
+  double next_summary_ = 0;                 ///< seconds of the user interface
 };
 
 }  // namespace
 
-extern const PanelKind kind = {
+extern const PanelSpec spec = {
     "Timeline", DockArea::bottom,
-    "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
-    "at wrong and disturbed frames",
+    "Times of all algorithms over the whole recording, pairs and bodies, and marks at wrong and "
+    "disturbed frames",
     make<TimelinePanel>};
 
 }  // namespace broadmark::panels::timeline

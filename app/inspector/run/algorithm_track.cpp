@@ -23,7 +23,7 @@ void TrackCurves::set(std::uint32_t frame, const FrameRecord& record) {
   mismatches.set(frame, record.mismatch ? 1 : FrameValues::kUnknown);
 }
 
-const TrackReport* trackOf(const std::vector<TrackReport>& tracks, int number) {
+const TrackReport* findTrack(const std::vector<TrackReport>& tracks, int number) {
   const auto found =
       std::ranges::find(tracks, number, [](const TrackReport& track) { return track.spec.number; });
   return found == tracks.end() ? nullptr : &*found;
@@ -37,27 +37,27 @@ std::uint64_t framesOver(const TrackReport& track, double ms) {
 }
 
 template <class Call>
-void AlgorithmTrack::attempt(Call&& call) {
+void AlgorithmTrack::callGuarded(Call&& call) {
   try {
     call();
     report_.status = run_->status();
     report_.reason = run_->reason();
-    report_.ended = !run_->running();
+    report_.finished = !run_->running();
   } catch (const std::exception& error) {
     report_.status = Status::error;
     report_.reason = error.what();
-    report_.ended = true;
+    report_.finished = true;
   }
 }
 
 void AlgorithmTrack::restart(const SceneInfo& scene, const Frame& first) {
   report_.frame = 0;
-  outdated_ = false;
-  attempt([&] {
-    if (!run_) run_.emplace(spec().test_case, kPolicy, make_host_, cancelled_);
+  stale_ = false;
+  callGuarded([&] {
+    if (!run_) run_.emplace(spec().test_case, kPolicy, make_executor_, cancelled_);
     if (run_->start(scene, first)) report_.setup = run_->setup();
   });
-  if (report_.ended) return;
+  if (report_.finished) return;
   report_.margin = run_->margin();
   report_.initialize_ns = run_->initializeNanoseconds();
 }
@@ -70,7 +70,7 @@ FrameRecord& AlgorithmTrack::recordOf(std::uint32_t index) {
 void AlgorithmTrack::advance(const Frame& frame, DrawGate& gate) {
   FrameRecord record;
   gate.beginTiming();
-  attempt([&] { run_->step(frame); });
+  callGuarded([&] { run_->step(frame); });
   record.disturbed = gate.endTiming();
   if (!run_->answered()) return;
   record.run = true;
@@ -80,12 +80,12 @@ void AlgorithmTrack::advance(const Frame& frame, DrawGate& gate) {
   recordOf(frame.index) = record;
   report_.curves.set(frame.index, record);
   report_.frame = frame.index;
-  attempt([&] { report_.counters = run_->counters(); });
+  callGuarded([&] { report_.counters = run_->counters(); });
 }
 
 std::optional<FrameDifference> AlgorithmTrack::check(const Frame& frame, Oracle& oracle) {
   std::optional<FrameDifference> difference;
-  attempt([&] { difference = run_->check(frame, oracle); });
+  callGuarded([&] { difference = run_->check(frame, oracle); });
   if (!difference) return difference;
   FrameRecord& record = recordOf(frame.index);
   record.checked = true;
@@ -98,25 +98,25 @@ std::optional<FrameDifference> AlgorithmTrack::check(const Frame& frame, Oracle&
   return difference;
 }
 
-void AlgorithmTrack::requireChecked(std::uint32_t after) {
+void AlgorithmTrack::restartUnlessChecked(std::uint32_t after) {
   if (!spec().test_case.algorithm.traits.finds_pairs || after >= report_.frame) return;
-  outdated_ = !std::ranges::all_of(std::span(report_.frames).subspan(after, report_.frame - after),
-                                   &FrameRecord::checked);
+  stale_ = !std::ranges::all_of(std::span(report_.frames).subspan(after, report_.frame - after),
+                                &FrameRecord::checked);
 }
 
 std::vector<Pair> AlgorithmTrack::answer() {
   std::vector<Pair> pairs;
-  attempt([&] {
+  callGuarded([&] {
     const PairRuns answer = run_->answer();
     pairs.reserve(pairCount(answer));
-    for (const PairRun part : answer) pairs.insert(pairs.end(), part.begin(), part.end());
+    for (const PairRun chunk : answer) pairs.insert(pairs.end(), chunk.begin(), chunk.end());
   });
   return pairs;
 }
 
 RecordedDrawing AlgorithmTrack::structure() {
   RecordedDrawing drawing;
-  attempt([&] { drawing = run_->structure(); });
+  callGuarded([&] { drawing = run_->structure(); });
   return drawing;
 }
 

@@ -1,4 +1,4 @@
-// An algorithm under observation: its case, and what it has done frame by frame.
+// An inspected algorithm: its case, and its results frame by frame.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace broadmark {
 
 /// The result of a frame.
 struct FrameRecord : FrameRow {
-  bool run = false;  ///< false: nothing is known of this frame
+  bool run = false;  ///< false: the frame has not been run
   bool mismatch = false;
 };
 
-/// The records of a track as curves.
+/// The frame records of a track as curves.
 struct TrackCurves {
   std::array<FrameValues, kPhases.entries.size()> seconds;  ///< by phase
   FrameValues pairs;
@@ -37,7 +37,7 @@ struct TrackSpec {
   int number = 0;
   Case test_case;
 
-  /// Whether both would do the same.
+  /// Whether both tracks run the same case.
   friend bool operator==(const TrackSpec& a, const TrackSpec& b) {
     return a.number == b.number && a.test_case.device == b.test_case.device &&
            caseName(a.test_case) == caseName(b.test_case);
@@ -48,85 +48,85 @@ struct TrackSpec {
 struct TrackState {
   TrackSpec spec;
   Status status = Status::ok;
-  std::string reason;       ///< for every status but ok
-  bool ended = false;       ///< it is not run any more: too slow, unsupported or broken
-  std::uint32_t frame = 0;  ///< the last frame that it has run
+  std::string reason;       ///< set unless the status is ok
+  bool finished = false;    ///< no more frames are run: too slow, unsupported or failed
+  std::uint32_t frame = 0;  ///< last frame run
   std::int64_t initialize_ns = 0;
   float margin = 0;
-  std::map<std::string, std::uint64_t> setup;     ///< counted once, in the initialisation
-  std::map<std::string, std::uint64_t> counters;  ///< of work, in the last frame
+  std::map<std::string, std::uint64_t> setup;     ///< counters of the initialisation
+  std::map<std::string, std::uint64_t> counters;  ///< work counters of the last frame
 };
 
 /// The results of a track; a copy stays valid while the track advances.
 struct TrackReport : TrackState {
   std::vector<FrameRecord> frames;  ///< frame k at [k - 1]
-  TrackCurves curves;               ///< of `frames`
+  TrackCurves curves;               ///< `frames` as curves
 
-  /// The record of a frame, or null when nothing is known of it.
+  /// Returns the record of a frame, or null if the frame has not been run.
   [[nodiscard]] const FrameRecord* record(std::uint32_t index) const {
     if (index == 0 || index > frames.size() || !frames[index - 1].run) return nullptr;
     return &frames[index - 1];
   }
 };
 
-/// The track of this number, or null.
-const TrackReport* trackOf(const std::vector<TrackReport>& tracks, int number);
+/// Returns the track with this number, or null.
+const TrackReport* findTrack(const std::vector<TrackReport>& tracks, int number);
 
-/// How many of the frames took longer.
+/// Number of frames that took longer than `ms`.
 std::uint64_t framesOver(const TrackReport& track, double ms);
 
-/// The running track: a CaseRun, which starts another pass when an earlier frame is requested.
+/// A running track: a CaseRun that starts another pass when an earlier frame is requested.
 class AlgorithmTrack {
  public:
-  /// A frame that takes longer, on average, ends the track.
+  /// Time limit per frame, on average; exceeding it ends the track.
   static constexpr double kFrameLimitSeconds = 10;
 
   /// `cancelled` is polled during long calls; if true, they throw Cancelled.
-  explicit AlgorithmTrack(TrackSpec spec, ExecutorFactory make_host = makeLocalHost,
+  explicit AlgorithmTrack(TrackSpec spec, ExecutorFactory make_executor = makeInProcessExecutor,
                           CancelQuery cancelled = {})
-      : make_host_(std::move(make_host)), cancelled_(std::move(cancelled)) {
+      : make_executor_(std::move(make_executor)), cancelled_(std::move(cancelled)) {
     report_.spec = std::move(spec);
   }
 
   [[nodiscard]] const TrackReport& report() const { return report_; }
   [[nodiscard]] const TrackSpec& spec() const { return report_.spec; }
-  /// Whether its instance is at this frame: it can be asked for its answer, and can run the next
-  /// frame unless it has ended.
-  [[nodiscard]] bool standsAt(std::uint32_t index) const {
-    return run_ && !outdated_ && (run_->running() || run_->answered()) && report_.frame == index;
+  /// Whether the instance is at this frame: its answer is available, and it can run the next frame
+  /// unless it has finished.
+  [[nodiscard]] bool isAt(std::uint32_t index) const {
+    return run_ && !stale_ && (run_->running() || run_->answered()) && report_.frame == index;
   }
 
-  // These throw nothing but Cancelled: what goes wrong becomes the status.
-  /// A fresh instance, at the initial pose. What was recorded of later frames stays until they are
-  /// run again. Not once it has ended.
+  // These throw only Cancelled: other errors become the status.
+  /// Creates a fresh instance at the initial poses, unless the track has finished. Records of later
+  /// frames stay until those frames are run again.
   void restart(const SceneInfo& scene, const Frame& first);
-  /// Runs the frame after the present one.
+  /// Runs the frame after the current one.
   void advance(const Frame& frame, DrawGate& gate);
-  /// Compares the present answer with the right one; nothing when the algorithm is not checked.
+  /// Compares the current answer with the oracle's; nothing if the algorithm cannot be checked.
   std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
 
-  /// Schedules a restart unless all frames run after this one were checked, as far as the
-  /// algorithm can be.
-  void requireChecked(std::uint32_t after);
+  /// Schedules a restart unless all frames run after frame `after` were checked, or the algorithm
+  /// cannot be checked.
+  void restartUnlessChecked(std::uint32_t after);
 
-  // Only while standsAt() some frame.
+  // Precondition: the instance is at a frame, see isAt().
   std::vector<Pair> answer();
   RecordedDrawing structure();
 
  private:
   [[nodiscard]] FrameRecord& recordOf(std::uint32_t index);
-  /// Calls into the run, and takes over its status.
+  /// Calls into `run_`, and copies its status or its error to the report.
   template <class Call>
-  void attempt(Call&& call);
+  void callGuarded(Call&& call);
 
   TrackReport report_;
-  ExecutorFactory make_host_;
+  ExecutorFactory make_executor_;
   CancelQuery cancelled_;
-  std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
-  bool outdated_ = false;       ///< has to restart before its next use
+  std::optional<CaseRun> run_;  ///< created by the first restart(), reused in all passes
+  bool stale_ = false;          ///< restart before the next use
 };
 
-/// All frames that the tracks have run, in the format of FrameTable.
+/// Formats all frames run by the tracks as a FrameTable.
 std::string formatFrameTable(const SceneInfo& scene, const std::vector<TrackReport>& tracks);
 
 }  // namespace broadmark

@@ -5,35 +5,35 @@
 namespace broadmark {
 namespace {
 
-/// Small numbers of either sign become small ones without.
-std::uint64_t folded(std::int64_t number) {
+/// Maps integers of small magnitude to small unsigned integers, as Protocol Buffers do.
+std::uint64_t zigZagEncode(std::int64_t number) {
   return (static_cast<std::uint64_t>(number) << 1) ^ static_cast<std::uint64_t>(number >> 63);
 }
 
-std::int64_t unfolded(std::uint64_t number) {
+std::int64_t zigZagDecode(std::uint64_t number) {
   return static_cast<std::int64_t>(number >> 1) ^ -static_cast<std::int64_t>(number & 1);
 }
 
-/// Seven bits a byte; the eighth says that more follow.
-void put(std::vector<std::uint8_t>& bytes, std::int64_t number) {
-  std::uint64_t rest = folded(number);
-  for (; rest >= 0x80; rest >>= 7) bytes.push_back(static_cast<std::uint8_t>(rest | 0x80));
-  bytes.push_back(static_cast<std::uint8_t>(rest));
+/// Seven bits per byte; the eighth is set if more bytes follow.
+void writeVarint(std::vector<std::uint8_t>& bytes, std::int64_t number) {
+  std::uint64_t bits = zigZagEncode(number);
+  for (; bits >= 0x80; bits >>= 7) bytes.push_back(static_cast<std::uint8_t>(bits | 0x80));
+  bytes.push_back(static_cast<std::uint8_t>(bits));
 }
 
-std::int64_t take(const std::uint8_t*& at) {
+std::int64_t readVarint(const std::uint8_t*& position) {
   std::uint64_t number = 0;
   for (int shift = 0;; shift += 7) {
-    const std::uint8_t byte = *at++;
+    const std::uint8_t byte = *position++;
     number |= std::uint64_t{byte & 0x7FU} << shift;
-    if (byte < 0x80) return unfolded(number);
+    if (byte < 0x80) return zigZagDecode(number);
   }
 }
 
 std::size_t bytesOf(const std::vector<Pair>& pairs) { return pairs.capacity() * sizeof(Pair); }
 
-/// Roughly: what stands beside the pairs.
-std::size_t bytesBeside(const CachedAnswer& answer) {
+/// Estimated size of an answer without its pairs.
+std::size_t overheadBytes(const CachedAnswer& answer) {
   constexpr std::size_t kPerCounter = 100;
   std::size_t bytes = 500 + answer.counters.size() * kPerCounter;
   if (const auto& difference = answer.difference) {
@@ -46,75 +46,75 @@ std::size_t bytesBeside(const CachedAnswer& answer) {
 }  // namespace
 
 PackedPairs::PackedPairs(std::span<const Pair> pairs) : count_(pairs.size()) {
-  constexpr std::size_t kUsual = 4;  // bytes a pair
-  bytes_.reserve(kUsual * pairs.size());
-  std::int64_t before = 0;
+  constexpr std::size_t kTypicalBytesPerPair = 4;
+  bytes_.reserve(kTypicalBytesPerPair * pairs.size());
+  std::int64_t previous = 0;
   for (const Pair pair : pairs) {
-    put(bytes_, pair.a - before);
-    put(bytes_, std::int64_t{pair.b} - pair.a);
-    before = pair.a;
+    writeVarint(bytes_, pair.a - previous);
+    writeVarint(bytes_, std::int64_t{pair.b} - pair.a);
+    previous = pair.a;
   }
   bytes_.shrink_to_fit();
 }
 
 std::vector<Pair> PackedPairs::unpacked() const {
   std::vector<Pair> pairs(count_);
-  const std::uint8_t* at = bytes_.data();
-  std::int64_t before = 0;
+  const std::uint8_t* position = bytes_.data();
+  std::int64_t previous = 0;
   for (Pair& pair : pairs) {
-    before += take(at);
-    pair.a = static_cast<std::uint32_t>(before);
-    pair.b = static_cast<std::uint32_t>(before + take(at));
+    previous += readVarint(position);
+    pair.a = static_cast<std::uint32_t>(previous);
+    pair.b = static_cast<std::uint32_t>(previous + readVarint(position));
   }
   return pairs;
 }
 
-void AnswerCache::remember(int track, std::uint32_t frame, const CachedAnswer& answer) {
+void AnswerCache::insert(int track, std::uint32_t frame, const CachedAnswer& answer) {
   const Key key{track, frame};
-  if (const auto found = entries_.find(key); found != entries_.end()) drop(found->second);
-  Kept kept{
+  if (const auto found = index_.find(key); found != index_.end()) evict(found->second);
+  Entry entry{
       .key = key,
       .pairs = PackedPairs(answer.pairs),
-      .right = PackedPairs(answer.right),
-      .rest = {
-          .judged = answer.judged, .difference = answer.difference, .counters = answer.counters}};
-  kept.bytes = kept.pairs.bytes() + kept.right.bytes() + bytesBeside(kept.rest);
-  if (kept.bytes > budget_bytes_) return;
-  while (bytes_ + kept.bytes > budget_bytes_) drop(kept_.begin());
-  bytes_ += kept.bytes;
-  kept_.push_back(std::move(kept));
-  entries_[key] = std::prev(kept_.end());
+      .oracle_pairs = PackedPairs(answer.oracle_pairs),
+      .metadata = {
+          .checked = answer.checked, .difference = answer.difference, .counters = answer.counters}};
+  entry.bytes = entry.pairs.bytes() + entry.oracle_pairs.bytes() + overheadBytes(entry.metadata);
+  if (entry.bytes > budget_bytes_) return;
+  while (bytes_ + entry.bytes > budget_bytes_) evict(entries_.begin());
+  bytes_ += entry.bytes;
+  entries_.push_back(std::move(entry));
+  index_[key] = std::prev(entries_.end());
 }
 
-std::optional<CachedAnswer> AnswerCache::recall(int track, std::uint32_t frame) const {
-  const auto found = entries_.find({track, frame});
-  if (found == entries_.end()) return {};
-  CachedAnswer answer = found->second->rest;
+std::optional<CachedAnswer> AnswerCache::find(int track, std::uint32_t frame) const {
+  const auto found = index_.find({track, frame});
+  if (found == index_.end()) return {};
+  CachedAnswer answer = found->second->metadata;
   answer.pairs = found->second->pairs.unpacked();
-  answer.right = found->second->right.unpacked();
+  answer.oracle_pairs = found->second->oracle_pairs.unpacked();
   return answer;
 }
 
-bool AnswerCache::holds(int track, std::uint32_t frame, bool judged) const {
-  const auto found = entries_.find({track, frame});
-  return found != entries_.end() && (!judged || found->second->rest.judged);
+bool AnswerCache::contains(int track, std::uint32_t frame, bool checked) const {
+  const auto found = index_.find({track, frame});
+  return found != index_.end() && (!checked || found->second->metadata.checked);
 }
 
-void AnswerCache::forget(int track) {
-  auto at = entries_.lower_bound({track, 0});
-  while (at != entries_.end() && at->first.first == track) drop((at++)->second);
+void AnswerCache::erase(int track) {
+  auto at = index_.lower_bound({track, 0});
+  while (at != index_.end() && at->first.first == track) evict((at++)->second);
 }
 
 void AnswerCache::clear() {
-  kept_.clear();
   entries_.clear();
+  index_.clear();
   bytes_ = 0;
 }
 
-void AnswerCache::drop(Entry entry) {
+void AnswerCache::evict(Iterator entry) {
   bytes_ -= entry->bytes;
-  entries_.erase(entry->key);
-  kept_.erase(entry);
+  index_.erase(entry->key);
+  entries_.erase(entry);
 }
 
 }  // namespace broadmark

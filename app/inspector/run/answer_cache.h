@@ -1,4 +1,4 @@
-// The answers of frames that have been seen, kept so that these frames can be shown again at once.
+// Cached answers of frames already run, so that these frames can be shown again at once.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace broadmark {
 
-/// Pairs in their order, in about half of their memory.
+/// Pairs in their order, delta-encoded in about half of the memory.
 class PackedPairs {
  public:
   PackedPairs() = default;
@@ -30,51 +30,51 @@ class PackedPairs {
   std::size_t count_ = 0;
 };
 
-/// An answer for a frame, and its difference from the right one.
+/// An answer for a frame, and its difference from the oracle's.
 struct CachedAnswer {
   std::vector<Pair> pairs;
-  bool judged = false;  ///< compared with the oracle's answer, if it can be
+  bool checked = false;  ///< compared with the oracle's answer, if the algorithm can be checked
   std::optional<FrameDifference> difference;
-  std::vector<Pair> right;  ///< the oracle's pairs, unless it agrees()
-  Counts counters;          ///< of work
+  std::vector<Pair> oracle_pairs;  ///< empty if matchesOracle()
+  Counts counters;                 ///< work counters
 
-  /// Whether both find the same, allowed extra pairs included.
-  [[nodiscard]] bool agrees() const {
+  /// Whether the pairs are exactly the oracle's, without allowed extra pairs.
+  [[nodiscard]] bool matchesOracle() const {
     return difference && !difference->isMismatch() && difference->allowed_extra_count == 0;
   }
 };
 
-/// The answers of all frames and tracks that fit in a budget; the oldest give way.
+/// The answers of frames and tracks, within a memory budget; the oldest are evicted first.
 class AnswerCache {
  public:
   explicit AnswerCache(std::size_t budget_bytes) : budget_bytes_(budget_bytes) {}
 
-  /// `track`: its number; 0: the oracle. Replaces what was kept before.
-  void remember(int track, std::uint32_t frame, const CachedAnswer& answer);
-  [[nodiscard]] std::optional<CachedAnswer> recall(int track, std::uint32_t frame) const;
-  /// Whether there is one, which was judged if that is asked for.
-  [[nodiscard]] bool holds(int track, std::uint32_t frame, bool judged) const;
-  void forget(int track);
+  /// Stores an answer, replacing an earlier one. `track`: number of the track; 0: the oracle.
+  void insert(int track, std::uint32_t frame, const CachedAnswer& answer);
+  [[nodiscard]] std::optional<CachedAnswer> find(int track, std::uint32_t frame) const;
+  /// Whether there is an answer; with `checked`, one that was compared with the oracle's.
+  [[nodiscard]] bool contains(int track, std::uint32_t frame, bool checked) const;
+  void erase(int track);
   void clear();
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:
   using Key = std::pair<int, std::uint32_t>;
-  struct Kept {
+  struct Entry {
     Key key;
     PackedPairs pairs;
-    PackedPairs right;
-    CachedAnswer rest;  ///< without its pairs
+    PackedPairs oracle_pairs;
+    CachedAnswer metadata;  ///< the answer without its pairs
     std::size_t bytes = 0;
   };
-  using Entry = std::list<Kept>::iterator;
+  using Iterator = std::list<Entry>::iterator;
 
-  void drop(Entry entry);
+  void evict(Iterator entry);
 
   std::size_t budget_bytes_;
   std::size_t bytes_ = 0;
-  std::list<Kept> kept_;  ///< the oldest first
-  std::map<Key, Entry> entries_;
+  std::list<Entry> entries_;  ///< oldest first
+  std::map<Key, Iterator> index_;
 };
 
 }  // namespace broadmark

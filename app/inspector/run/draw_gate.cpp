@@ -5,12 +5,12 @@ namespace broadmark {
 void DrawGate::beginTiming() {
   std::unique_lock lock(mutex_);
   timing_waits_ = true;
-  changed_.wait(lock, [this] { return !drawing_ && !(drawing_waits_ && last_ == Side::timing); });
+  changed_.wait(lock, [this] { return !drawing_ && !(drawing_waits_ && turn_ == Side::timing); });
   timing_waits_ = false;
   timing_ = true;
   disturbed_ = false;
-  last_ = Side::timing;
-  timing_since_ = Clock::now();
+  turn_ = Side::timing;
+  timing_start_ = Clock::now();
 }
 
 bool DrawGate::endTiming() {
@@ -23,17 +23,17 @@ bool DrawGate::endTiming() {
 void DrawGate::beginDrawing() {
   std::unique_lock lock(mutex_);
   drawing_waits_ = true;
-  const auto free = [this] { return !timing_ && !(timing_waits_ && last_ == Side::drawing); };
-  // A turn that has just begun gets its whole time.
-  const auto deadline = (timing_ ? timing_since_ : Clock::now()) + kPatience;
-  changed_.wait_until(lock, deadline, free);
-  while (timing_ && Clock::now() < timing_since_ + kPatience) {
-    changed_.wait_until(lock, timing_since_ + kPatience, [this] { return !timing_; });
+  const auto may_draw = [this] { return !timing_ && !(timing_waits_ && turn_ == Side::drawing); };
+  // A timing that has just started gets its full turn.
+  const auto deadline = (timing_ ? timing_start_ : Clock::now()) + kMaxDrawWait;
+  changed_.wait_until(lock, deadline, may_draw);
+  while (timing_ && Clock::now() < timing_start_ + kMaxDrawWait) {
+    changed_.wait_until(lock, timing_start_ + kMaxDrawWait, [this] { return !timing_; });
   }
   drawing_waits_ = false;
   drawing_ = true;
   disturbed_ |= timing_;
-  last_ = Side::drawing;
+  turn_ = Side::drawing;
 }
 
 void DrawGate::endDrawing() {

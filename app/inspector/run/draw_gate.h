@@ -1,4 +1,4 @@
-// Drawing and timing exclude each other, so that neither disturbs the other.
+// Mutual exclusion of drawing and timing, so that drawing does not disturb measurements.
 #pragma once
 
 #include <chrono>
@@ -7,15 +7,15 @@
 
 namespace broadmark {
 
-/// While a frame is being timed nothing is drawn, and while something is drawn no frame begins to
-/// be timed; when both sides are eager they alternate. Only a frame that takes longer than
-/// kPatience does not keep the other side from drawing; it is then called disturbed.
+/// Nothing is drawn while a frame is timed, and no timing starts while something is drawn; under
+/// contention the two sides alternate. After kMaxDrawWait drawing proceeds even while a frame is
+/// timed; this frame then counts as disturbed.
 class DrawGate {
  public:
-  static constexpr std::chrono::milliseconds kPatience{50};
+  static constexpr std::chrono::milliseconds kMaxDrawWait{50};
 
   void beginTiming();
-  /// Whether something was drawn meanwhile.
+  /// Returns whether the timing was disturbed by drawing.
   bool endTiming();
 
   void beginDrawing();
@@ -32,8 +32,8 @@ class DrawGate {
   bool timing_waits_ = false;
   bool drawing_waits_ = false;
   bool disturbed_ = false;
-  Side last_ = Side::none;
-  Clock::time_point timing_since_;
+  Side turn_ = Side::none;  ///< the latest side to start
+  Clock::time_point timing_start_;
 };
 
 }  // namespace broadmark

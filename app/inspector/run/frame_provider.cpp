@@ -13,13 +13,12 @@
 namespace broadmark {
 namespace {
 
-constexpr const char* kKeptName = "the frames simulated so far";
+constexpr const char* kTemporaryName = "the frames simulated so far";
 
-/// A file of boxes, frame after frame and nothing else. Those that are not written yet cannot be
-/// read.
-class KeptFrames final : public IndexedFrames {
+/// Reads a file of boxes, frame after frame. Frames not written yet cannot be read.
+class TemporaryFrames final : public IndexedFrames {
  public:
-  KeptFrames(SceneInfo scene, std::shared_ptr<const FileDescriptor> file)
+  TemporaryFrames(SceneInfo scene, std::shared_ptr<const FileDescriptor> file)
       : scene_(std::move(scene)), file_(std::move(file)), boxes_(scene_.objects) {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
@@ -28,7 +27,7 @@ class KeptFrames final : public IndexedFrames {
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
     const auto bytes = std::as_writable_bytes(std::span(boxes_));
     if (readAll(file_->get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
-      throw InputError(fmt::format("{}: cannot read frame {}", kKeptName, index));
+      throw InputError(fmt::format("{}: cannot read frame {}", kTemporaryName, index));
     }
     return boxes_;
   }
@@ -39,11 +38,11 @@ class KeptFrames final : public IndexedFrames {
 };
 
 void append(const FileDescriptor& file, std::span<const Aabb> boxes) {
-  writeAll(file.get(), std::as_bytes(boxes), kKeptName);
+  writeAll(file.get(), std::as_bytes(boxes), kTemporaryName);
 }
 
-/// The frames as they are shown, swept or not.
-std::unique_ptr<IndexedFrames> shown(std::unique_ptr<IndexedFrames> frames, bool swept) {
+/// Wraps the frames in SweptFrames if `swept`.
+std::unique_ptr<IndexedFrames> sweptIf(std::unique_ptr<IndexedFrames> frames, bool swept) {
   if (!swept) return frames;
   return std::make_unique<SweptFrames>(std::move(frames));
 }
@@ -52,51 +51,51 @@ std::unique_ptr<IndexedFrames> shown(std::unique_ptr<IndexedFrames> frames, bool
 
 FrameProvider::FrameProvider(std::unique_ptr<Recording> recording, bool swept)
     : swept_(swept),
-      known_(recording->scene().frames),
-      frames_(shown(std::move(recording), swept)) {}
+      available_(recording->scene().frames),
+      frames_(sweptIf(std::move(recording), swept)) {}
 
 FrameProvider::FrameProvider(std::unique_ptr<FrameSource> simulation, bool swept)
     : swept_(swept), simulation_(std::move(simulation)) {
   const Frame first = simulation_->rewind();
-  keep(simulation_->scene(), first.boxes);
+  store(simulation_->scene(), first.boxes);
 }
 
-FrameProvider::FrameProvider(SceneInfo scene, std::span<const Aabb> boxes) { keep(scene, boxes); }
+FrameProvider::FrameProvider(SceneInfo scene, std::span<const Aabb> boxes) { store(scene, boxes); }
 
-void FrameProvider::keep(const SceneInfo& scene, std::span<const Aabb> first) {
-  kept_ = std::make_shared<const FileDescriptor>(unnamedFile());
-  frames_ = shown(std::make_unique<KeptFrames>(scene, kept_), swept_);
-  append(*kept_, first);
+void FrameProvider::store(const SceneInfo& scene, std::span<const Aabb> first) {
+  file_ = std::make_shared<const FileDescriptor>(unnamedFile());
+  frames_ = sweptIf(std::make_unique<TemporaryFrames>(scene, file_), swept_);
+  append(*file_, first);
 }
 
-void FrameProvider::extend() {
+void FrameProvider::simulateNext() {
   const std::optional<Frame> frame = simulation_->next();
   if (!frame) throw std::logic_error("simulated beyond the last frame");
-  append(*kept_, frame->boxes);
-  ++known_;
+  append(*file_, frame->boxes);
+  ++available_;
 }
 
 scenes::AuthoredScene FrameProvider::authoredScene(std::uint32_t index) {
-  if (auto* whole = dynamic_cast<scenes::SceneSource*>(simulation_.get());
-      whole && index == known_) {
-    return whole->authoredScene();
+  if (auto* scene_source = dynamic_cast<scenes::SceneSource*>(simulation_.get());
+      scene_source && index == available_) {
+    return scene_source->authoredScene();
   }
-  // Of other simulations, such as replays, only the boxes are known.
+  // Other simulations, such as replays, provide only the boxes.
   return scenes::sceneFromFrame(*frames_, index);
 }
 
 FrameOpener FrameProvider::opener() const {
-  if (!kept_) {
+  if (!file_) {
     return [name = frames_->name(), swept = swept_](std::uint32_t /*last*/) {
-      return shown(openRecordingFile(name), swept);
+      return sweptIf(openRecordingFile(name), swept);
     };
   }
   auto scene =
       std::make_shared<const SceneInfo>(simulation_ ? simulation_->scene() : this->scene());
-  return [scene = std::move(scene), kept = kept_, swept = swept_](std::uint32_t last) {
-    SceneInfo known = *scene;
-    known.frames = last;
-    return shown(std::make_unique<KeptFrames>(std::move(known), kept), swept);
+  return [scene = std::move(scene), file = file_, swept = swept_](std::uint32_t last) {
+    SceneInfo available = *scene;
+    available.frames = last;
+    return sweptIf(std::make_unique<TemporaryFrames>(std::move(available), file), swept);
   };
 }
 

@@ -9,17 +9,17 @@
 namespace broadmark {
 namespace {
 
-/// Bodies that all overlap by a mistake should not take all memory: this is half a gigabyte.
+/// Limits the pairs to 512 MiB, in case all bodies overlap by mistake.
 constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
 
-/// Whether a snapshot for either request also serves the other.
-bool showSame(const ViewRequest& a, const ViewRequest& b) {
+/// Whether both requests need the same snapshot content, apart from source and frame.
+bool sameSnapshot(const ViewRequest& a, const ViewRequest& b) {
   return a.check == b.check && a.shown_track == b.shown_track && a.structure == b.structure &&
          a.trail_bodies == b.trail_bodies && a.second == b.second;
 }
 
-/// How many pairs overlap, by what an algorithm reported and how wrong that was.
-std::uint64_t rightPairs(const FrameRecord& record) {
+/// Number of overlapping pairs, computed from an algorithm's answer and its mismatches.
+std::uint64_t overlappingPairs(const FrameRecord& record) {
   const FrameCounts& counts = record.counts;
   return counts[FrameCount::pairs] + counts[FrameCount::missed] - counts[FrameCount::false_pairs] -
          counts[FrameCount::allowed_extra] - counts[FrameCount::invalid];
@@ -31,8 +31,8 @@ float fractionOf(std::uint32_t part, std::uint32_t whole) {
 
 }  // namespace
 
-RunThread::RunThread(ExecutorFactory make_host)
-    : make_host_(std::move(make_host)), thread_([this] { loop(); }) {}
+RunThread::RunThread(ExecutorFactory make_executor)
+    : make_executor_(std::move(make_executor)), thread_([this] { loop(); }) {}
 
 RunThread::~RunThread() {
   {
@@ -47,33 +47,33 @@ void RunThread::request(ViewRequest request) {
   {
     const std::lock_guard lock(mutex_);
     requested_ = std::move(request);
-    ++requests_;
+    ++posted_;
   }
   changed_.notify_all();
 }
 
-void RunThread::readProgress(const std::function<void(const RunProgress&)>& at) {
+void RunThread::readProgress(const std::function<void(const RunProgress&)>& visitor) {
   const std::lock_guard lock(mutex_);
-  at(progress_);
+  visitor(progress_);
 }
 
 bool RunThread::isIdle() {
   const std::lock_guard lock(mutex_);
-  return idle_ && taken_ == requests_;
+  return idle_ && applied_ == posted_;
 }
 
-bool RunThread::waitUntilIdle(std::chrono::milliseconds patience) {
+bool RunThread::waitUntilIdle(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, patience, [this] { return idle_ && taken_ == requests_; });
+  return changed_.wait_for(lock, timeout, [this] { return idle_ && applied_ == posted_; });
 }
 
 void RunThread::loop() {
   std::unique_lock lock(mutex_);
   while (true) {
     if (stopping_) return;
-    if (taken_ != requests_) takeRequest();
+    if (applied_ != posted_) applyRequest();
     if (idle_) {
-      changed_.wait(lock, [this] { return stopping_ || taken_ != requests_; });
+      changed_.wait(lock, [this] { return stopping_ || applied_ != posted_; });
       continue;
     }
     lock.unlock();
@@ -81,115 +81,116 @@ void RunThread::loop() {
     try {
       more = step();
     } catch (const Cancelled&) {
-      more = true;  // another request has come
+      more = true;  // by a new request
     } catch (const std::exception& error) {
-      fail(error.what());
+      publishFailure(error.what());
     }
     lock.lock();
-    if (more || taken_ != requests_) continue;
+    if (more || applied_ != posted_) continue;
     idle_ = true;
-    progress_.doing.clear();
+    progress_.activity.clear();
     changed_.notify_all();
   }
 }
 
-/// With mutex_ held.
-void RunThread::takeRequest() {
-  if (!showSame(current_, requested_)) shown_ = false;
-  looked_back_ = false;
-  // A track beyond the shown frame continues from there only if it was checked up to there.
+/// Requires mutex_.
+void RunThread::applyRequest() {
+  if (!sameSnapshot(current_, requested_)) snapshots_valid_ = false;
+  cache_tried_ = false;
+  // A track beyond the target may continue only if its frames after the target were checked.
   if (requested_.check && provider_) {
-    for (const auto& track : tracks_) track->requireChecked(target());
+    for (const auto& track : tracks_) track->restartUnlessChecked(target());
   }
   current_ = requested_;
-  taken_ = requests_;
+  applied_ = posted_;
   idle_ = false;
 }
 
-/// Runs the next unit of work; false when there is none left.
+/// Runs the next unit of work; returns false if none is left.
 bool RunThread::step() {
-  if (current_.source != opened_) {
+  if (current_.source != open_source_) {
     openSource();
     return true;
   }
   if (provider_ == nullptr) return false;
   if (updateTracks()) return true;
-  if (!std::exchange(looked_back_, true) && showCached()) return true;
+  if (!std::exchange(cache_tried_, true) && publishCachedSnapshot()) return true;
   if (advance() || advanceSecond()) return true;
-  if (shown_) return false;
-  show();
+  if (snapshots_valid_) return false;
+  publishSnapshots();
   return true;
 }
 
-void RunThread::fail(std::string reason) {
+void RunThread::publishFailure(std::string reason) {
   const std::lock_guard lock(mutex_);
   progress_.failure = std::move(reason);
 }
 
-bool RunThread::isUnwanted(const TrackSpec& spec) {
+bool RunThread::isTrackCancelled(const TrackSpec& spec) {
   const std::lock_guard lock(mutex_);
-  return stopping_ || requested_.source != opened_ ||
+  return stopping_ || requested_.source != open_source_ ||
          std::ranges::find(requested_.tracks, spec) == requested_.tracks.end();
 }
 
-bool RunThread::isUnwantedInSecond(const TrackSpec& spec) {
-  if (isUnwanted(spec)) return true;
+bool RunThread::isSecondTrackCancelled(const TrackSpec& spec) {
+  if (isTrackCancelled(spec)) return true;
   const std::lock_guard lock(mutex_);
   return !requested_.second || requested_.second->track != spec.number ||
          requested_.second->source != current_.second->source;
 }
 
-void RunThread::setActivity(std::string doing, float fraction) {
+void RunThread::publishActivity(std::string activity, float fraction) {
   const std::lock_guard lock(mutex_);
-  progress_.doing = std::move(doing);
+  progress_.activity = std::move(activity);
   progress_.fraction = fraction;
 }
 
 void RunThread::openSource() {
-  setActivity(current_.source ? fmt::format("opening {}", current_.source->title) : "", 0);
+  publishActivity(current_.source ? fmt::format("opening {}", current_.source->title) : "", 0);
   tracks_.clear();
   second_ = {};
   provider_.reset();
   oracle_ = Oracle(std::size_t{256} << 20, kMaxPairs);
   cache_.clear();
   stop_.reset();
-  shown_ = false;
-  opened_ = current_.source;
+  snapshots_valid_ = false;
+  open_source_ = current_.source;
   std::string failure;
   try {
-    if (opened_) provider_ = opened_->open();
+    if (open_source_) provider_ = open_source_->open();
   } catch (const std::exception& error) {
     failure = error.what();
   }
   const std::lock_guard lock(mutex_);
-  progress_ = RunProgress{.source = opened_, .failure = std::move(failure)};
+  progress_ = RunProgress{.source = open_source_, .failure = std::move(failure)};
   if (provider_ == nullptr) return;
   progress_.scene = provider_->scene();
-  progress_.known_frames = provider_->known();
+  progress_.available_frames = provider_->lastAvailable();
   progress_.live = provider_->live();
   progress_.frames = provider_->opener();
 }
 
-/// Adds and removes tracks to match the request. Returns whether any had changed.
+/// Adds and removes tracks to match the request. Returns whether any changed.
 bool RunThread::updateTracks() {
   const auto spec_of = [](const auto& track) -> const TrackSpec& { return track->spec(); };
   if (std::ranges::equal(tracks_, current_.tracks, {}, spec_of)) return false;
 
-  std::vector<std::unique_ptr<AlgorithmTrack>> kept = std::move(tracks_);
+  std::vector<std::unique_ptr<AlgorithmTrack>> old_tracks = std::move(tracks_);
   tracks_.clear();
   for (const TrackSpec& spec : current_.tracks) {
     const auto found = std::ranges::find_if(
-        kept, [&](const auto& track) { return track && track->spec() == spec; });
-    tracks_.push_back(found != kept.end()
+        old_tracks, [&](const auto& track) { return track && track->spec() == spec; });
+    tracks_.push_back(found != old_tracks.end()
                           ? std::move(*found)
-                          : std::make_unique<AlgorithmTrack>(
-                                spec, make_host_, [this, spec] { return isUnwanted(spec); }));
+                          : std::make_unique<AlgorithmTrack>(spec, make_executor_, [this, spec] {
+                              return isTrackCancelled(spec);
+                            }));
   }
-  for (const auto& gone : kept) {
-    if (gone) cache_.forget(gone->spec().number);
+  for (const auto& removed : old_tracks) {
+    if (removed) cache_.erase(removed->spec().number);
   }
-  kept.clear();
-  shown_ = false;
+  old_tracks.clear();
+  snapshots_valid_ = false;
   stop_.reset();
   const std::lock_guard lock(mutex_);
   progress_.stop.reset();
@@ -203,126 +204,126 @@ std::uint32_t RunThread::target() const {
   return stop_ ? std::min(last, stop_->frame) : last;
 }
 
-/// Reads a frame of the source and records its population.
+/// Reads a frame and records its population.
 Frame RunThread::frameAt(std::uint32_t index) {
   const Frame frame = provider_->at(index);
-  notePopulation(index, frame.boxes);
+  recordPopulation(index, frame.boxes);
   return frame;
 }
 
-void RunThread::notePopulation(std::uint32_t index, std::span<const Aabb> boxes) {
+void RunThread::recordPopulation(std::uint32_t index, std::span<const Aabb> boxes) {
   if (provider_->scene().all_present) return;
-  const auto present = static_cast<float>(presentIn(boxes));
+  const auto present = static_cast<float>(countPresent(boxes));
   const std::lock_guard lock(mutex_);
   progress_.population.set(index, present);
 }
 
-/// Brings the source and one track a frame nearer to the target. Returns whether it had to.
+/// Advances the source or one track by a frame towards the target. Returns false at the target.
 bool RunThread::advance() {
   if (stop_ && (!current_.check || !current_.stop_at_mismatch ||
-                (current_.known_mismatch && *current_.known_mismatch >= stop_->frame))) {
+                (current_.acknowledged && *current_.acknowledged >= stop_->frame))) {
     stop_.reset();
     const std::lock_guard lock(mutex_);
     progress_.stop.reset();
   }
-  const bool shares = current_.second && !current_.second->source;
-  const std::uint32_t beside = shares ? current_.second->frame.value_or(0) : 0;
-  const std::uint32_t wanted = std::max(target(), std::min(beside, provider_->scene().frames));
-  if (provider_->known() < wanted) {
-    setActivity(fmt::format("simulating frame {}", provider_->known() + 1),
-                fractionOf(provider_->known(), wanted));
-    provider_->extend();
-    if (!provider_->scene().all_present) frameAt(provider_->known());
+  const bool shared = current_.second && !current_.second->source;
+  const std::uint32_t second_frame = shared ? current_.second->frame.value_or(0) : 0;
+  const std::uint32_t needed =
+      std::max(target(), std::min(second_frame, provider_->scene().frames));
+  if (provider_->lastAvailable() < needed) {
+    publishActivity(fmt::format("simulating frame {}", provider_->lastAvailable() + 1),
+                    fractionOf(provider_->lastAvailable(), needed));
+    provider_->simulateNext();
+    if (!provider_->scene().all_present) frameAt(provider_->lastAvailable());
     const std::lock_guard lock(mutex_);
-    progress_.known_frames = provider_->known();
+    progress_.available_frames = provider_->lastAvailable();
     return true;
   }
-  // The hindmost first: then all pass each frame before any goes on.
-  AlgorithmTrack* hindmost = nullptr;
+  // Advance the trailing track, so that the tracks stay within a frame of each other.
+  AlgorithmTrack* trailing = nullptr;
   for (const auto& track : tracks_) {
-    if (track->report().ended || track->standsAt(target()) || isCached(*track)) continue;
-    const bool restarts =
-        track->report().frame > target() || !track->standsAt(track->report().frame);
+    if (track->report().finished || track->isAt(target()) || isServedFromCache(*track)) continue;
+    const bool restarts = track->report().frame > target() || !track->isAt(track->report().frame);
     if (restarts) {
       track->restart(provider_->scene(), provider_->at(0));
-      report(*track);
-      shown_ = false;
+      publishTrack(*track);
+      snapshots_valid_ = false;
       return true;
     }
-    if (hindmost == nullptr || track->report().frame < hindmost->report().frame) {
-      hindmost = track.get();
+    if (trailing == nullptr || track->report().frame < trailing->report().frame) {
+      trailing = track.get();
     }
   }
-  if (hindmost == nullptr) {
+  if (trailing == nullptr) {
     const std::lock_guard lock(mutex_);
-    if (!progress_.snapshot || progress_.snapshot->source != opened_ ||
+    if (!progress_.snapshot || progress_.snapshot->source != open_source_ ||
         progress_.snapshot->frame != target()) {
-      shown_ = false;
+      snapshots_valid_ = false;
     }
     return false;
   }
-  const std::uint32_t next = hindmost->report().frame + 1;
-  const std::string& id = hindmost->spec().test_case.algorithm.id;
-  setActivity(hindmost->report().record(next) != nullptr
-                  ? fmt::format("running {} again up to frame {}", id, target())
-                  : fmt::format("{}: frame {}", id, next),
-              fractionOf(next, target()));
-  return advanceTrack(*hindmost, frameAt(next));
+  const std::uint32_t next = trailing->report().frame + 1;
+  const std::string& id = trailing->spec().test_case.algorithm.id;
+  publishActivity(trailing->report().record(next) != nullptr
+                      ? fmt::format("running {} again up to frame {}", id, target())
+                      : fmt::format("{}: frame {}", id, next),
+                  fractionOf(next, target()));
+  return advanceTrack(*trailing, frameAt(next));
 }
 
 bool RunThread::advanceTrack(AlgorithmTrack& track, const Frame& frame) {
-  shown_ = false;
-  track.advance(frame, gate_);
+  snapshots_valid_ = false;
+  track.advance(frame, draw_gate_);
   std::optional<FrameDifference> difference;
-  if (current_.check && track.standsAt(frame.index)) {
+  if (current_.check && track.isAt(frame.index)) {
     difference = track.check(frame, oracle_);
-    const bool known = current_.known_mismatch && frame.index <= *current_.known_mismatch;
-    if (difference && difference->isMismatch() && !known && current_.stop_at_mismatch &&
+    const bool acknowledged = current_.acknowledged && frame.index <= *current_.acknowledged;
+    if (difference && difference->isMismatch() && !acknowledged && current_.stop_at_mismatch &&
         (!stop_ || frame.index < stop_->frame)) {
       stop_ = RunProgress::Stop{.frame = frame.index, .track = track.spec().number};
       const std::lock_guard lock(mutex_);
       progress_.stop = stop_;
     }
   }
-  // show() asks at the target.
-  if (&track == shownTrack() && frame.index != target() && track.standsAt(frame.index) &&
+  // At the target publishSnapshots() caches the answer.
+  if (&track == shownTrack() && frame.index != target() && track.isAt(frame.index) &&
       !isAnswerCached(frame.index)) {
     const CachedAnswer answer = answerOf(track, frame, current_.check, std::move(difference),
                                          provider_->scene().filter, oracle_);
-    if (track.standsAt(frame.index)) cache_.remember(track.spec().number, frame.index, answer);
+    if (track.isAt(frame.index)) cache_.insert(track.spec().number, frame.index, answer);
   }
-  report(track);
+  publishTrack(track);
   return true;
 }
 
-void RunThread::report(const AlgorithmTrack& track) {
+void RunThread::publishTrack(const AlgorithmTrack& track) {
   const TrackReport& now = track.report();
   const std::lock_guard lock(mutex_);
-  const auto shown =
+  const auto published =
       std::ranges::find(progress_.tracks, now.spec.number,
                         [](const TrackReport& report) { return report.spec.number; });
-  if (shown == progress_.tracks.end()) return;
-  static_cast<TrackState&>(*shown) = now;
-  // The history changes at the present frame only, and is too long to be copied every time.
-  shown->frames.resize(now.frames.size());
+  if (published == progress_.tracks.end()) return;
+  static_cast<TrackState&>(*published) = now;
+  // Copy only the current record: the rest of the history is unchanged, and long.
+  published->frames.resize(now.frames.size());
   if (now.frame == 0) return;
   const FrameRecord& record = now.frames[now.frame - 1];
-  shown->frames[now.frame - 1] = record;
-  shown->curves.set(now.frame, record);
+  published->frames[now.frame - 1] = record;
+  published->curves.set(now.frame, record);
   if (now.spec.test_case.answer == AnswerKind::pairs &&
       now.spec.test_case.algorithm.traits.finds_pairs) {
-    progress_.pairs.set(now.frame, static_cast<float>(rightPairs(record)));
+    progress_.pairs.set(now.frame, static_cast<float>(overlappingPairs(record)));
   }
 }
 
-AlgorithmTrack* RunThread::trackOf(int number) const {
+AlgorithmTrack* RunThread::findTrack(int number) const {
   const auto found =
       std::ranges::find(tracks_, number, [](const auto& track) { return track->spec().number; });
   return found == tracks_.end() ? nullptr : found->get();
 }
 
 AlgorithmTrack* RunThread::shownTrack() const {
-  return target() > 0 ? trackOf(current_.shown_track) : nullptr;
+  return target() > 0 ? findTrack(current_.shown_track) : nullptr;
 }
 
 FrameProvider* RunThread::secondProvider() const {
@@ -334,29 +335,30 @@ std::uint32_t RunThread::secondTarget() const {
 }
 
 AlgorithmTrack* RunThread::secondTrack() {
-  AlgorithmTrack* const of_first = trackOf(current_.second->track);
-  if (of_first == nullptr) {
+  AlgorithmTrack* const first_view_track = findTrack(current_.second->track);
+  if (first_view_track == nullptr) {
     second_.track.reset();
     return nullptr;
   }
-  if (secondTarget() == 0) return nullptr;  // which has no answer
-  if (!second_.opened && secondTarget() == target()) return of_first;
-  if (const TrackSpec& spec = of_first->spec(); !second_.track || second_.track->spec() != spec) {
+  if (secondTarget() == 0) return nullptr;  // frame 0 has no answer
+  if (!second_.opened && secondTarget() == target()) return first_view_track;
+  if (const TrackSpec& spec = first_view_track->spec();
+      !second_.track || second_.track->spec() != spec) {
     second_.track = std::make_unique<AlgorithmTrack>(
-        spec, make_host_, [this, spec] { return isUnwantedInSecond(spec); });
+        spec, make_executor_, [this, spec] { return isSecondTrackCancelled(spec); });
   }
   return second_.track.get();
 }
 
-/// Brings what the second view shows nearer to what it is to be. Returns whether it had to.
+/// Advances the second view by one step. Returns false if it is up to date.
 bool RunThread::advanceSecond() {
   if (!current_.second) return false;
-  if (const auto& wanted = current_.second->source; wanted != second_.opened) {
-    setActivity(fmt::format("opening {}", wanted ? wanted->title : ""), 1);
-    shown_ = false;
-    second_ = {.opened = wanted};
+  if (const auto& source = current_.second->source; source != second_.opened) {
+    publishActivity(fmt::format("opening {}", source ? source->title : ""), 1);
+    snapshots_valid_ = false;
+    second_ = {.opened = source};
     try {
-      if (wanted) second_.provider = wanted->open();
+      if (source) second_.provider = source->open();
     } catch (const std::exception& error) {
       second_.failure = error.what();
     }
@@ -364,65 +366,66 @@ bool RunThread::advanceSecond() {
   }
   FrameProvider* const provider = secondProvider();
   if (provider == nullptr) return false;
-  if (provider->known() < secondTarget()) {
-    setActivity(fmt::format("simulating frame {} for the second view", provider->known() + 1), 1);
-    provider->extend();
-    shown_ = false;
+  if (provider->lastAvailable() < secondTarget()) {
+    publishActivity(
+        fmt::format("simulating frame {} for the second view", provider->lastAvailable() + 1), 1);
+    provider->simulateNext();
+    snapshots_valid_ = false;
     return true;
   }
   AlgorithmTrack* const track = secondTrack();
-  if (track == nullptr || track != second_.track.get()) return false;  // advance() sees to it
+  if (track == nullptr || track != second_.track.get()) return false;  // advance() runs it
   const std::uint32_t frame = track->report().frame;
-  if (track->report().ended || track->standsAt(secondTarget())) return false;
-  setActivity(fmt::format("{} for the second view: frame {}", track->spec().test_case.algorithm.id,
-                          frame + 1),
-              1);
-  shown_ = false;
-  if (frame > secondTarget() || !track->standsAt(frame)) {
+  if (track->report().finished || track->isAt(secondTarget())) return false;
+  publishActivity(fmt::format("{} for the second view: frame {}",
+                              track->spec().test_case.algorithm.id, frame + 1),
+                  1);
+  snapshots_valid_ = false;
+  if (frame > secondTarget() || !track->isAt(frame)) {
     track->restart(provider->scene(), provider->at(0));
   } else {
-    track->advance(provider->at(frame + 1), gate_);
+    track->advance(provider->at(frame + 1), draw_gate_);
   }
   return true;
 }
 
-std::shared_ptr<const Snapshot> RunThread::takeSecondSnapshot() {
-  return takeSnapshot({.source = second_.opened ? second_.opened : opened_,
-                       .provider = *secondProvider(),
-                       .frame = secondTarget(),
-                       .track = secondTrack(),
-                       .check = current_.check,
-                       .structure = current_.structure,
-                       .trail_bodies = current_.trail_bodies},
-                      second_oracle_);
+std::shared_ptr<const Snapshot> RunThread::captureSecondSnapshot() {
+  return captureSnapshot({.source = second_.opened ? second_.opened : open_source_,
+                          .provider = *secondProvider(),
+                          .frame = secondTarget(),
+                          .track = secondTrack(),
+                          .check = current_.check,
+                          .structure = current_.structure,
+                          .trail_bodies = current_.trail_bodies},
+                         second_oracle_);
 }
 
-void RunThread::show() {
+void RunThread::publishSnapshots() {
   const std::uint32_t index = target();
-  const auto snapshot = takeSnapshot({.source = opened_,
-                                      .provider = *provider_,
-                                      .frame = index,
-                                      .track = shownTrack(),
-                                      .seen = &cache_,
-                                      .check = current_.check,
-                                      .structure = current_.structure,
-                                      .trail_bodies = current_.trail_bodies},
-                                     oracle_);
+  const auto snapshot = captureSnapshot({.source = open_source_,
+                                         .provider = *provider_,
+                                         .frame = index,
+                                         .track = shownTrack(),
+                                         .cache = &cache_,
+                                         .check = current_.check,
+                                         .structure = current_.structure,
+                                         .trail_bodies = current_.trail_bodies},
+                                        oracle_);
   if (!current_.second) second_ = {};
-  const bool wants_second = current_.second && secondProvider() != nullptr;
-  const auto second = snapshot && wants_second ? takeSecondSnapshot() : nullptr;
-  if (!snapshot || (wants_second && !second)) {  // a track was lost on the way: shown without it
-    for (const auto& track : tracks_) report(*track);
+  const bool has_second = current_.second && secondProvider() != nullptr;
+  const auto second = snapshot && has_second ? captureSecondSnapshot() : nullptr;
+  if (!snapshot || (has_second && !second)) {  // a track has failed: retry without it
+    for (const auto& track : tracks_) publishTrack(*track);
     return;
   }
-  if (index > 0) notePopulation(index - 1, *snapshot->boxes_before);
-  notePopulation(index, *snapshot->boxes);
+  if (index > 0) recordPopulation(index - 1, *snapshot->boxes_before);
+  recordPopulation(index, *snapshot->boxes);
   std::shared_ptr<const PairComparison> comparison;
   if (second) {
     comparison =
         std::make_shared<const PairComparison>(comparePairs(snapshot->pairs, second->pairs));
   }
-  shown_ = true;
+  snapshots_valid_ = true;
   const std::lock_guard lock(mutex_);
   if (snapshot->track == 0) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
   progress_.snapshot = snapshot;
@@ -433,32 +436,32 @@ void RunThread::show() {
 
 bool RunThread::isAnswerCached(std::uint32_t frame) const {
   if (const AlgorithmTrack* track = shownTrack()) {
-    return cache_.holds(track->spec().number, frame, current_.check);
+    return cache_.contains(track->spec().number, frame, current_.check);
   }
-  return cache_.holds(0, frame, false);
+  return cache_.contains(0, frame, false);
 }
 
-bool RunThread::isCached(const AlgorithmTrack& track) const {
+bool RunThread::isServedFromCache(const AlgorithmTrack& track) const {
   if (current_.playing) return false;
   const std::uint32_t frame = target();
-  if (frame == 0) return track.standsAt(track.report().frame);
+  if (frame == 0) return track.isAt(track.report().frame);
   const FrameRecord* record = track.report().record(frame);
-  const bool judges = current_.check && track.spec().test_case.algorithm.traits.finds_pairs;
-  if (record == nullptr || (judges && !record->checked)) return false;
+  const bool checks = current_.check && track.spec().test_case.algorithm.traits.finds_pairs;
+  if (record == nullptr || (checks && !record->checked)) return false;
   if (&track == shownTrack()) return isAnswerCached(frame) && !current_.structure;
-  // Of another one the second view wants the answer itself.
+  // The second view needs the answer of its track, not only the record.
   return !current_.second || current_.second->track != track.spec().number;
 }
 
-/// Shows a frame that has been seen before any algorithm is run. Returns whether it did.
-bool RunThread::showCached() {
+/// Shows a cached frame at once, before any algorithm runs. Returns whether it did.
+bool RunThread::publishCachedSnapshot() {
   const std::uint32_t frame = target();
   const AlgorithmTrack* track = shownTrack();
-  const bool stands = track != nullptr && track->standsAt(frame);
-  const bool there = shown_ && progress_.snapshot->frame == frame;
-  if (current_.playing || current_.second || stands || there || !isAnswerCached(frame))
+  const bool at_frame = track != nullptr && track->isAt(frame);
+  const bool shown = snapshots_valid_ && progress_.snapshot->frame == frame;
+  if (current_.playing || current_.second || at_frame || shown || !isAnswerCached(frame))
     return false;
-  show();
+  publishSnapshots();
   return true;
 }
 

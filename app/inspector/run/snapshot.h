@@ -1,4 +1,4 @@
-// The visible state of a frame, and how it is captured.
+// Snapshots: the visible state of a frame.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace broadmark {
 
-/// Where what is looked at comes from.
+/// Origin of the inspected frames.
 enum class FrameOrigin { simulation, recording, import, authored, results };
 inline constexpr NameTable kFrameOrigins{{NamedValue{FrameOrigin::simulation, "live simulation"},
                                           {FrameOrigin::recording, "recording"},
@@ -27,22 +27,22 @@ inline constexpr NameTable kFrameOrigins{{NamedValue{FrameOrigin::simulation, "l
                                           {FrameOrigin::authored, "authored scene"},
                                           {FrameOrigin::results, "case of results"}}};
 
-/// What to look at. Compared by address: the same one is opened once.
+/// A source of frames to open. Requests are compared by address: the same one is opened once.
 struct FrameProviderRequest {
   FrameProviderOpener open;  ///< called on the run thread
   FrameOrigin origin = FrameOrigin::simulation;
   std::string title;
-  /// Requests of the same number, unless 0, show the same scene, perhaps changed: the camera stays
-  /// where it is.
+  /// Requests with the same nonzero number show versions of the same scene: the camera does not
+  /// move.
   std::uint64_t scene = 0;
-  std::filesystem::path recording = {};  ///< "": something else
-  std::string scene_parameters = {};     ///< as formatSceneParameters() writes them; "": unknown
+  std::filesystem::path recording = {};  ///< "" for other origins
+  std::string scene_parameters = {};     ///< from formatSceneParameters(); "": unknown
 };
 
 /// A body's boxes up to the shown frame.
 struct Trail {
   std::uint32_t body = 0;
-  std::uint32_t first = 0;  ///< the frame of the first box
+  std::uint32_t first = 0;  ///< frame of the first box
   std::vector<Aabb> boxes;
 };
 
@@ -52,38 +52,38 @@ struct Snapshot {
   SceneInfo scene;
   std::uint32_t frame = 0;
   std::shared_ptr<const std::vector<Aabb>> boxes;
-  std::uint32_t present = 0;                              ///< bodies that are there
+  std::uint32_t present = 0;                              ///< number of present bodies
   std::shared_ptr<const std::vector<Aabb>> boxes_before;  ///< null for frame 0
   int track = 0;                        ///< number of the answer's track; 0: the oracle's
   std::vector<Pair> pairs;              ///< the answer
-  std::vector<std::uint32_t> overlaps;  ///< per body, in how many pairs of the answer it is
+  std::vector<std::uint32_t> overlaps;  ///< per body: number of the answer's pairs with it
   bool checked = false;
-  std::uint64_t right_pairs = 0;              ///< that the oracle finds, if checked
-  std::vector<std::uint32_t> right_overlaps;  ///< as `overlaps`, of the oracle's pairs, if checked
-  FrameDifference difference;                 ///< from the right answer, if checked
-  Counts counters;                            ///< of the track's work
-  std::shared_ptr<const RecordedDrawing> structure;  ///< null: not asked for
+  std::uint64_t oracle_pair_count = 0;         ///< number of the oracle's pairs, if checked
+  std::vector<std::uint32_t> oracle_overlaps;  ///< `overlaps` for the oracle's pairs, if checked
+  FrameDifference difference;                  ///< from the oracle's answer, if checked
+  Counts counters;                             ///< the track's work counters
+  std::shared_ptr<const RecordedDrawing> structure;  ///< null: not requested
   std::vector<Trail> trails;
 };
 
-/// What a snapshot is to show; borrowed.
+/// Content of a snapshot. Holds references.
 struct SnapshotRequest {
   const std::shared_ptr<const FrameProviderRequest>& source;
   FrameProvider& provider;
-  std::uint32_t frame = 0;  ///< that the source knows
+  std::uint32_t frame = 0;  ///< must be available
   AlgorithmTrack* track =
-      nullptr;  ///< source of the answer; null, or neither at this frame nor cached: the oracle
-  AnswerCache* seen = nullptr;  ///< reads cached answers and stores this one; null: no cache
+      nullptr;  ///< provides the answer; if null, or neither at this frame nor cached: the oracle
+  AnswerCache* cache = nullptr;  ///< null: no cache
   bool check = true;
   bool structure = false;
   std::span<const std::uint32_t> trail_bodies;  ///< bodies to show over the last frames
 };
-/// Null when the track was lost on the way.
-std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotRequest& request, Oracle& oracle);
+/// Captures a snapshot. Returns null if the track fails meanwhile.
+std::shared_ptr<const Snapshot> captureSnapshot(const SnapshotRequest& request, Oracle& oracle);
 
-/// The answer of a track that stands at this frame, with the difference from the right one, if it
-/// was compared (`judged`) and can be.
-CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool judged,
+/// Reads the answer of a track that is at this frame. `checked`: it was compared with the oracle's,
+/// with this difference if the algorithm can be checked.
+CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool checked,
                       std::optional<FrameDifference> difference, const CollisionFilter& filter,
                       Oracle& oracle);
 
@@ -93,10 +93,10 @@ struct PairComparison {
   std::uint64_t both = 0;
 };
 
-/// Of pairs in any order; what an answer holds twice counts once. O(n log n).
+/// Compares pairs in any order; duplicates count once. O(n log n).
 PairComparison comparePairs(std::span<const Pair> first, std::span<const Pair> second);
 
-/// How many bodies are there.
-std::uint32_t presentIn(std::span<const Aabb> boxes);
+/// Number of bodies that are present.
+std::uint32_t countPresent(std::span<const Aabb> boxes);
 
 }  // namespace broadmark

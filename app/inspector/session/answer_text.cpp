@@ -11,12 +11,12 @@
 namespace broadmark {
 namespace {
 
-/// Its id, with the parameters where another track has the same.
+/// The algorithm's id; with its parameters if another track runs the same algorithm.
 std::string ownerName(const std::vector<TrackReport>& tracks, const TrackReport& track) {
   const std::string& id = track.spec.test_case.algorithm.id;
-  const auto alike = std::ranges::count_if(
+  const auto same_id = std::ranges::count_if(
       tracks, [&](const TrackReport& other) { return other.spec.test_case.algorithm.id == id; });
-  return alike > 1 ? caseName(track.spec.test_case) : id;
+  return same_id > 1 ? caseName(track.spec.test_case) : id;
 }
 
 std::string differenceText(const FrameDifference& difference) {
@@ -31,15 +31,15 @@ std::string differenceText(const FrameDifference& difference) {
 void compareWithOracle(const Snapshot& snapshot, AnswerText& text) {
   if (!snapshot.checked) {
     text.verdict = AnswerText::Verdict::unchecked;
-    text.beside = "not compared with the oracle's answer";
+    text.comparison = "not compared with the oracle's answer";
     return;
   }
   const FrameDifference& difference = snapshot.difference;
   text.verdict = difference.isMismatch() ? AnswerText::Verdict::wrong : AnswerText::Verdict::right;
   const std::string details = differenceText(difference);
-  text.beside = details.empty()
-                    ? "the oracle finds the same"
-                    : fmt::format("the oracle finds {}: {}", snapshot.right_pairs, details);
+  text.comparison =
+      details.empty() ? "the oracle finds the same"
+                      : fmt::format("the oracle finds {}: {}", snapshot.oracle_pair_count, details);
 }
 
 std::string pairText(const Snapshot& snapshot, const std::string& owner,
@@ -63,18 +63,18 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<TrackReport>& 
                       std::span<const std::uint32_t> selection) {
   AnswerText text;
   const std::string pairs = counted(snapshot.pairs.size(), "pair");
-  if (const TrackReport* track = trackOf(tracks, snapshot.track)) {
+  if (const TrackReport* track = findTrack(tracks, snapshot.track)) {
     text.owner = ownerName(tracks, *track);
     text.answer = fmt::format("{} reports {}", text.owner, pairs);
     compareWithOracle(snapshot, text);
   } else {
     text.answer = fmt::format("the oracle finds {}", pairs);
-    const TrackReport* silent = trackOf(tracks, chosen);
-    if (silent != nullptr) {
-      text.beside =
-          fmt::format("{} has no answer for frame {}", ownerName(tracks, *silent), snapshot.frame);
+    const TrackReport* requested = findTrack(tracks, chosen);
+    if (requested != nullptr) {
+      text.comparison = fmt::format("{} has no answer for frame {}", ownerName(tracks, *requested),
+                                    snapshot.frame);
     } else if (!tracks.empty()) {
-      text.beside = "no algorithm's answer is shown";
+      text.comparison = "no algorithm's answer is shown";
     }
   }
   text.pair = pairText(snapshot, text.owner, selection);

@@ -1,4 +1,4 @@
-// Which bodies are selected, and which of them the view is to fly to.
+// The selected bodies, and the bodies that the camera flies to.
 #pragma once
 
 #include <algorithm>
@@ -16,32 +16,32 @@ class BodySelection {
  public:
   using Bodies = std::vector<std::uint32_t>;
 
-  /// The parts outlive it.
+  /// The arguments must outlive this object.
   BodySelection(const Playback& playback, Document& document)
       : playback_(playback), document_(document) {}
 
-  /// Ascending. While the document is shown, those that its editor works on.
+  /// Ascending. While the document is shown: the selection of its editor.
   [[nodiscard]] const Bodies& bodies() const {
     return document_.shown() ? document_.editor.selection() : bodies_;
   }
 
-  /// Selects these, given in any order; those that do not exist are left out.
+  /// Selects bodies, given in any order; ignores those that do not exist.
   void select(Bodies bodies) {
     scenes::SceneEditor& editor = document_.editor;
-    const bool of_document = document_.shown();
+    const bool in_document = document_.shown();
     const std::size_t count =
-        of_document ? editor.scene().bodies.size() : playback_.scene().objects;
+        in_document ? editor.scene().bodies.size() : playback_.scene().objects;
     std::ranges::sort(bodies);
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
     std::erase_if(bodies, [&](std::uint32_t body) { return body >= count; });
-    if (of_document) {
+    if (in_document) {
       editor.select(std::move(bodies));
     } else {
       bodies_ = std::move(bodies);
     }
   }
 
-  /// Adds bodies (ascending), or takes them away if all of them are selected.
+  /// Adds bodies (ascending), or removes them if all of them are selected.
   void toggle(const Bodies& bodies) {
     Bodies toggled;
     if (std::ranges::includes(this->bodies(), bodies)) {
@@ -52,27 +52,27 @@ class BodySelection {
     select(std::move(toggled));
   }
 
-  /// These and all that are selected with them.
-  [[nodiscard]] Bodies whole(Bodies bodies) const {
+  /// Returns the bodies and the other members of their groups.
+  [[nodiscard]] Bodies withGroups(Bodies bodies) const {
     return document_.shown() ? document_.editor.withGroups(std::move(bodies)) : bodies;
   }
 
-  /// Selects the two bodies of a pair and flies there.
-  void visit(Pair pair) {
+  /// Selects the two bodies of a pair, and flies to them.
+  void flyToPair(Pair pair) {
     select({pair.a, pair.b});
-    flyThere();
+    flyToSelection();
   }
-  void flyThere() { fly_to = bodies(); }
-  /// To be called when other source is shown.
+  void flyToSelection() { fly_to = bodies(); }
+  /// Call when another source is shown.
   void reset() { bodies_.clear(); }
 
-  /// What the view is to fly to, until it takes it; an empty list means everything.
+  /// Bodies to fly to, reset by the view; an empty list means all bodies.
   std::optional<Bodies> fly_to;
 
  private:
   const Playback& playback_;
   Document& document_;
-  Bodies bodies_;  ///< of source that is not the document
+  Bodies bodies_;  ///< selection in sources other than the document
 };
 
 }  // namespace broadmark

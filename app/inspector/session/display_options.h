@@ -1,4 +1,4 @@
-// How the scene is shown, in every view.
+// Display options of the scene, for all views.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +13,23 @@
 
 namespace broadmark {
 
-/// Which bodies of a crowd are drawn: those of some layers, sizes and colours, on one side of a
-/// plane.
+/// Selects the bodies to draw by layer, size, colour class, and side of a clip plane.
 struct BodyFilter {
-  std::uint32_t hidden_layers = 0;   ///< a bit each
-  std::uint64_t hidden_classes = 0;  ///< a bit for each entry of the legend
-  double smallest = 0;               ///< longest edges below it are hidden
-  double largest = 0;                ///< longest edges above it are hidden; 0: none
-  int clip_axis = -1;                ///< across which a plane stands: 0 to 2; -1: there is none
-  double clip_at = 0.5;              ///< where it stands, as a share of the world
-  bool clip_below = false;           ///< hides what is below the plane, not above
+  std::uint32_t hidden_layers = 0;   ///< one bit per layer
+  std::uint64_t hidden_classes = 0;  ///< one bit per entry of the legend
+  double smallest = 0;               ///< hides bodies whose longest edge is shorter
+  double largest = 0;                ///< hides bodies whose longest edge is longer; 0: none
+  int clip_axis = -1;                ///< axis normal to the clip plane: 0 to 2; -1: no plane
+  double clip_at = 0.5;              ///< position of the plane, as a fraction of the world
+  bool clip_below = false;           ///< hides the bodies below the plane, not above
 
-  /// Whether it hides anybody.
+  /// Whether the filter is active.
   [[nodiscard]] bool hides() const {
     return hidden_layers != 0 || hidden_classes != 0 || smallest > 0 || largest > 0 ||
            clip_axis >= 0;
   }
-  /// Where the plane stands on its axis.
-  [[nodiscard]] double clipPlace(const Aabb& world) const {
+  /// Position of the clip plane on its axis.
+  [[nodiscard]] double clipPosition(const Aabb& world) const {
     const auto axis = static_cast<std::size_t>(clip_axis);
     const double low = world.min[axis];
     return low + clip_at * (world.max[axis] - low);
@@ -39,23 +38,23 @@ struct BodyFilter {
   friend bool operator==(const BodyFilter&, const BodyFilter&) = default;
 };
 
-/// What a filter looks at; `layers` and `classes` may be empty.
-struct FilteredBodies {
+/// Input of a filter; `layers` and `classes` may be empty.
+struct FilterInput {
   std::span<const Aabb> boxes;
   std::span<const std::uint8_t> layers;
   std::span<const std::uint8_t> classes;
   Aabb world{};
 };
 
-/// Clears the marks of those that the filter hides; `visible` has one for each body. O(bodies).
-inline void hideBodies(const BodyFilter& filter, const FilteredBodies& bodies,
+/// Clears the `visible` flags of the bodies that the filter hides. O(bodies).
+inline void hideBodies(const BodyFilter& filter, const FilterInput& bodies,
                        std::vector<std::uint8_t>& visible) {
   const double largest = filter.largest > 0 ? filter.largest : std::numeric_limits<double>::max();
   const bool by_size = filter.smallest > 0 || filter.largest > 0;
   const bool by_layer = filter.hidden_layers != 0 && bodies.layers.size() == bodies.boxes.size();
   const bool by_class = filter.hidden_classes != 0 && bodies.classes.size() == bodies.boxes.size();
   const bool clips = filter.clip_axis >= 0;
-  const double plane = clips ? filter.clipPlace(bodies.world) : 0;
+  const double plane = clips ? filter.clipPosition(bodies.world) : 0;
   for (std::size_t body = 0; body < bodies.boxes.size(); ++body) {
     const Aabb& box = bodies.boxes[body];
     bool hidden = by_layer && ((filter.hidden_layers >> bodies.layers[body]) & 1U) != 0;
@@ -73,29 +72,29 @@ inline void hideBodies(const BodyFilter& filter, const FilteredBodies& bodies,
   }
 }
 
-/// The plane, as a flat box across the world; nothing without one.
+/// The clip plane as a flat box across the world; nothing without a plane.
 inline std::optional<Aabb> clipPlane(const BodyFilter& filter, const Aabb& world) {
   if (filter.clip_axis < 0) return {};
   Aabb plane = world;
   const auto axis = static_cast<std::size_t>(filter.clip_axis);
-  plane.min[axis] = plane.max[axis] = static_cast<float>(filter.clipPlace(world));
+  plane.min[axis] = plane.max[axis] = static_cast<float>(filter.clipPosition(world));
   return plane;
 }
 
 struct DisplayOptions {
-  std::size_t colouring = 0;  ///< which of the colour modes
-  bool hide_free = false;     ///< show only what overlaps
-  bool pair_lines = false;    ///< a line between the centres of overlapping bodies…
-  bool lines_of_all = false;  ///< …of all pairs, not only those of the selection
-  BodyFilter filter;          ///< hides further bodies
-  bool xray = false;          ///< the selection is seen through what stands before it
+  std::size_t colouring = 0;    ///< index of the colour mode
+  bool hide_free = false;       ///< show only overlapping bodies
+  bool pair_lines = false;      ///< lines between the centres of overlapping bodies…
+  bool all_pair_lines = false;  ///< …for all pairs, not only the selection's
+  BodyFilter filter;            ///< hides more bodies
+  bool xray = false;            ///< the selection is visible through other bodies
   bool world_box = true;
   bool ground = true;
   bool axes = true;
-  bool structure = false;      ///< what the shown algorithm draws of itself
-  bool structure_near = true;  ///< only around the selection, if there is one
-  int structure_level = -1;    ///< only this depth; -1: all
-  /// Colours tell how many bodies its cells hold, where it says so.
+  bool structure = false;      ///< draw the internal structure of the shown algorithm
+  bool structure_near = true;  ///< only around the selection, if any
+  int structure_level = -1;    ///< only this level; -1: all
+  /// Colour the cells by their number of bodies, if the algorithm reports it.
   bool structure_population = true;
 
   [[nodiscard]] const ColourMode& colourMode() const {

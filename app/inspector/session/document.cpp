@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scene where its bodies start, as source of a single frame.
-FrameProviderOpener stillOf(const scenes::AuthoredScene& scene) {
+/// A source of a single frame: the scene's bodies at their initial poses.
+FrameProviderOpener staticSource(const scenes::AuthoredScene& scene) {
   const SceneInfo info{.name = scene.name,
                        .object_type = scenes::objectTypeName(scene),
                        .objects = static_cast<std::uint32_t>(scene.bodies.size()),
@@ -31,88 +31,88 @@ std::unique_ptr<Simulation> Document::simulation() const {
   return scenes::makeAuthoredSimulation(editor.scene(), path_);
 }
 
-void Document::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
+void Document::load(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
   editor = scenes::SceneEditor(std::move(scene));
   path_ = std::move(path);
   unsaved_ = unsaved;
   scene_ = 0;
   show();
-  notices_.bringUp("Author");
+  notices_.raisePanel("Author");
 }
 
-void Document::startFromFrame() {
+void Document::loadCurrentFrame() {
   if (!playback_.source() || atRest()) return;
-  // The shown source is reopened and advanced to that frame, where all of its bodies are known.
-  FrameToTake wanted{.former = playback_.source(),
-                     .frame = playback_.frame(),
-                     .shown = {},
-                     .scene = std::make_shared<scenes::AuthoredScene>()};
+  // Reopen the source and simulate up to the frame, which provides all properties of the bodies.
+  PendingFrame pending{.previous = playback_.source(),
+                       .frame = playback_.frame(),
+                       .shown = {},
+                       .scene = std::make_shared<scenes::AuthoredScene>()};
   playback_.show({.open =
-                      [former = wanted.former, frame = wanted.frame, scene = wanted.scene] {
-                        const std::unique_ptr<FrameProvider> provider = former->open();
-                        while (provider->known() < frame) provider->extend();
+                      [previous = pending.previous, frame = pending.frame, scene = pending.scene] {
+                        const std::unique_ptr<FrameProvider> provider = previous->open();
+                        while (provider->lastAvailable() < frame) provider->simulateNext();
                         *scene = provider->authoredScene(frame);
-                        return stillOf(*scene)();
+                        return staticSource(*scene)();
                       },
                   .origin = FrameOrigin::authored,
-                  .title = fmt::format("frame {} of {}", wanted.frame, wanted.former->title)});
-  wanted.shown = playback_.source();
-  to_take_ = std::move(wanted);
+                  .title = fmt::format("frame {} of {}", pending.frame, pending.previous->title)});
+  pending.shown = playback_.source();
+  pending_frame_ = std::move(pending);
 }
 
 void Document::advance(const RunProgress& progress) {
-  if (!to_take_ || to_take_->shown != progress.source) return;
-  const FrameToTake wanted = *std::exchange(to_take_, {});
+  if (!pending_frame_ || pending_frame_->shown != progress.source) return;
+  const PendingFrame pending = *std::exchange(pending_frame_, {});
   if (progress.failure.empty()) {
-    start(std::move(*wanted.scene), {}, true);
+    load(std::move(*pending.scene), {}, true);
   } else {
-    playback_.showAgain(wanted.former, wanted.frame);
+    playback_.restore(pending.previous, pending.frame);
   }
 }
 
 void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {
   const std::uint64_t before = editor.revision();
-  notices_.attempt([&] { change(editor); });
+  notices_.catchErrors([&] { change(editor); });
   if (editor.revision() != before || !shown()) show();
 }
 
-void Document::add(const std::function<scenes::Stroke()>& painted) {
+void Document::add(const std::function<scenes::Stroke()>& paint_stroke) {
   std::optional<std::size_t> added;
   std::size_t left_out = 0;
   edit([&](scenes::SceneEditor& edited) {
-    scenes::Stroke stroke = painted();
+    scenes::Stroke stroke = paint_stroke();
     left_out = stroke.left_out;
     const std::size_t count = stroke.bodies.size();
     edited.add(std::move(stroke.bodies));
     added = count;
   });
   if (added && left_out == 0) {
-    notices_.say(fmt::format("{} added", counted(*added, "body", "bodies")));
+    notices_.setStatus(fmt::format("{} added", counted(*added, "body", "bodies")));
   } else if (added) {
-    notices_.say(fmt::format("no room for {}", counted(left_out, "body", "bodies")),
-                 Severity::warning);
+    notices_.setStatus(fmt::format("no room for {}", counted(left_out, "body", "bodies")),
+                       Severity::warning);
   }
 }
 
-void Document::showAs(FrameProviderOpener open, bool moves) {
-  // A different world gets a new camera.
+void Document::showFrames(FrameProviderOpener open, bool simulated) {
+  // A different world resets the camera.
   const Aabb& world = editor.scene().world;
   if (scene_ == 0 || world != world_) scene_ = ++last_scene_;
   world_ = world;
   playback_.pause();
   playback_.show({.open = std::move(open),
                   .origin = FrameOrigin::authored,
-                  .title = title() + (moves ? ", simulated" : ", at its start"),
+                  .title = title() + (simulated ? ", simulated" : ", at its start"),
                   .scene = scene_});
   source_ = playback_.source();
-  moves_ = moves;
+  simulated_ = simulated;
 }
 
-void Document::show() { showAs(stillOf(editor.scene()), false); }
+void Document::show() { showFrames(staticSource(editor.scene()), false); }
 
 void Document::simulate() {
   const auto scene = std::make_shared<const scenes::AuthoredScene>(editor.scene());
-  showAs(
+  showFrames(
       [scene, path = path()] {
         return std::make_unique<FrameProvider>(scenes::makeAuthoredSimulation(*scene, path));
       },
@@ -121,24 +121,24 @@ void Document::simulate() {
 
 bool Document::save(fs::path path) {
   if (!path.has_extension()) path += ".json";
-  return notices_.attempt([&] {
+  return notices_.catchErrors([&] {
     writeTextFile(path, scenes::formatAuthoredScene(editor.scene()));
     editor.markSaved();
     path_ = path;
     unsaved_ = false;
-    notices_.say(fmt::format("saved: {}", path.string()));
-    notices_.on_file(path);
+    notices_.setStatus(fmt::format("saved: {}", path.string()));
+    notices_.on_file_used(path);
   });
 }
 
 void Document::bake(fs::path path) {
   if (!path.has_extension()) path += recordingExtension(simulation()->scene());
-  notices_.attempt([&] { startBake(bake_, simulation(), std::move(path)); });
+  notices_.catchErrors([&] { startBake(bake_, simulation(), std::move(path)); });
 }
 
-void Document::leave(std::function<void()> then) {
+void Document::closeThen(std::function<void()> then) {
   if (isModified()) {
-    leaving = std::move(then);
+    pending_close = std::move(then);
   } else {
     then();
   }

@@ -1,4 +1,4 @@
-// The authored scene being edited: shown at rest or in motion, saved, baked, and left.
+// The authored scene being edited: shown at rest or simulated, saved, baked, closed.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace broadmark {
 
-/// The first three are the gizmo's; `none`: the mouse only selects, and moves the camera.
+/// `move`, `turn` and `scale` use the gizmo; `none`: the mouse only selects, and moves the camera.
 enum class Tool { none, move, turn, scale, brush };
 inline constexpr NameTable kTools{{NamedValue{Tool::none, "none"},
                                    {Tool::move, "move"},
@@ -27,112 +27,113 @@ inline constexpr NameTable kTools{{NamedValue{Tool::none, "none"},
                                    {Tool::scale, "scale"},
                                    {Tool::brush, "brush"}}};
 
-/// What the mouse does in the view with the document's bodies, besides selecting them.
+/// Settings of the mouse tools that edit the document's bodies in the view.
 struct Tools {
   Tool tool = Tool::move;
-  bool local = false;    ///< the gizmo's axes are those of the first selected body, not the world's
-  bool snaps = false;    ///< drags go by steps; while Ctrl is down, the other way round
-  double move_step = 1;  ///< in world units
+  bool local = false;     ///< the gizmo uses the axes of the first selected body, not the world's
+  bool snaps = false;     ///< drags snap to steps; Ctrl inverts this
+  double move_step = 1;   ///< in world units
   double turn_step = 15;  ///< in degrees
   double scale_step = 0.1;
 
-  /// Takes a tool, or puts it down if it is the one in hand.
-  void toggle(Tool which) { tool = tool == which ? Tool::none : which; }
+  /// Selects a tool, or none if it is already selected.
+  void toggle(Tool other) { tool = tool == other ? Tool::none : other; }
 };
 
-/// The scene with its history, its file, the brush, and the tools. At first it is empty.
+/// The scene with its history, its file, the brush and the tools. Initially empty.
 class Document {
  public:
-  /// The parts it acts on outlive it.
+  /// The arguments must outlive this object.
   Document(Playback& playback, Notices& notices, BackgroundBake& bake)
       : playback_(playback), notices_(notices), bake_(bake) {
     chooseBrush(0);
   }
 
-  /// Its file; "": none yet.
+  /// The file; "": none yet.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Its name for people: that of the file, or of the scene.
+  /// Display name: the file's name, or the scene's.
   [[nodiscard]] std::string title() const {
     return path_.empty() ? editor.scene().name : path_.filename().string();
   }
-  /// Whether it has unsaved changes.
+  /// Whether there are unsaved changes.
   [[nodiscard]] bool isModified() const { return unsaved_ || editor.isModified(); }
-  /// The simulation of a copy. Throws InputError. O(bodies).
+  /// Creates a simulation of a copy of the scene. Throws InputError. O(bodies).
   [[nodiscard]] std::unique_ptr<Simulation> simulation() const;
 
-  /// Takes another brush, by its index in `brushes`.
-  void chooseBrush(std::size_t which) {
-    brush_ = brushes.at(which).create();
-    chosen_brush_ = which;
+  /// Selects a brush by its index in `brushes`.
+  void chooseBrush(std::size_t index) {
+    brush_ = brushes.at(index).create();
+    chosen_brush_ = index;
   }
   [[nodiscard]] std::size_t chosenBrush() const { return chosen_brush_; }
   [[nodiscard]] scenes::Brush& brush() const { return *brush_; }
-  /// What the brush paints at `paint_at`. Throws InputError.
+  /// Paints a stroke at `paint_at`, without adding it. Throws InputError.
   [[nodiscard]] scenes::Stroke stroke() const {
     return scenes::paint(*brush_, paint, paint_at, editor.scene().bodies);
   }
 
-  /// Whether it is what is played.
+  /// Whether the playback shows the document.
   [[nodiscard]] bool shown() const { return source_ && source_ == playback_.source(); }
   /// Whether the document is shown with its bodies at their initial poses.
-  [[nodiscard]] bool atRest() const { return shown() && !moves_; }
+  [[nodiscard]] bool atRest() const { return shown() && !simulated_; }
 
-  /// Takes another scene, with no history, and shows it. `unsaved`: no file holds it as it is. Does
-  /// not ask.
-  void start(scenes::AuthoredScene scene, std::filesystem::path path = {}, bool unsaved = false);
-  /// Makes a scene of the frame that is played, once its bodies are known.
-  void startFromFrame();
-  /// To be called with each progress on what is played.
+  /// Replaces the scene and its history, without confirmation, and shows it. `unsaved`: it differs
+  /// from its file.
+  void load(scenes::AuthoredScene scene, std::filesystem::path path = {}, bool unsaved = false);
+  /// Replaces the scene by the shown frame, once that frame's bodies have been read.
+  void loadCurrentFrame();
+  /// Call with every progress of the playback's source.
   void advance(const RunProgress& progress);
 
-  /// Changes the scene and shows it at rest. What goes wrong becomes an error.
+  /// Changes the scene and shows it at rest. Reports errors.
   void edit(const std::function<void(scenes::SceneEditor&)>& change);
-  /// Adds what has been painted, selects it, and says how much that was. What goes wrong becomes an
-  /// error.
-  void add(const std::function<scenes::Stroke()>& painted);
-  /// Shows the scene at rest, or moves it on from its first frame.
+  /// Adds the painted bodies, selects them, and reports their number. Reports errors.
+  void add(const std::function<scenes::Stroke()>& paint_stroke);
+  /// Shows the scene at rest.
   void show();
+  /// Shows a simulation of the scene.
   void simulate();
-  /// Writes the scene to what becomes its file; `path` gets its extension if it has none. Returns
-  /// whether that went well; if not, there is an error.
+  /// Saves the scene to `path`, which becomes its file; adds a missing extension. Returns whether
+  /// it succeeded; reports errors.
   bool save(std::filesystem::path path);
-  /// Bakes the simulation in the background; `path` gets its extension if it has none.
+  /// Bakes the simulation in the background; adds a missing extension to `path`.
   void bake(std::filesystem::path path);
-  /// Calls `then`, which ends the document; with unsaved changes it becomes `leaving` instead, for
-  /// the user to decide.
-  void leave(std::function<void()> then);
+  /// Calls `then`, which discards the document. With unsaved changes, stores it in `pending_close`
+  /// instead, until the user decides.
+  void closeThen(std::function<void()> then);
 
-  scenes::SceneEditor editor;  ///< its selection is the session's, while shown()
+  scenes::SceneEditor editor;  ///< its selection is the session's while shown()
   const std::vector<scenes::BrushEntry> brushes = scenes::brushEntries();
   scenes::Paint paint;
   Vec3 paint_at{};  ///< where stroke() paints
   Tools tools;
-  std::function<void()> leaving;  ///< waits for unsaved changes to be saved or given up
+  std::function<void()> pending_close;  ///< to call once unsaved changes are saved or discarded
 
  private:
-  /// A frame that becomes a scene when `shown` is open.
-  struct FrameToTake {
-    std::shared_ptr<const FrameProviderRequest> former;  ///< to return to when that fails
+  /// A frame that becomes the scene when `shown` is open.
+  struct PendingFrame {
+    std::shared_ptr<const FrameProviderRequest> previous;  ///< shown again on failure
     std::uint32_t frame = 0;
     std::shared_ptr<const FrameProviderRequest> shown;
     std::shared_ptr<scenes::AuthoredScene> scene;
   };
 
-  void showAs(FrameProviderOpener open, bool moves);
+  void showFrames(FrameProviderOpener open, bool simulated);
 
   Playback& playback_;
   Notices& notices_;
   BackgroundBake& bake_;
   std::filesystem::path path_;
-  bool unsaved_ = false;  ///< no file holds it as it was handed in
+  bool unsaved_ = false;  ///< the loaded scene differs from its file
   std::size_t chosen_brush_ = 0;
   std::unique_ptr<scenes::Brush> brush_;
-  std::shared_ptr<const FrameProviderRequest> source_;  ///< that shows the document last
-  bool moves_ = false;
+  std::shared_ptr<const FrameProviderRequest>
+      source_;  ///< the latest source that shows the document
+  bool simulated_ = false;
   std::uint64_t scene_ = 0;  ///< see FrameProviderRequest; 0: not shown yet
   std::uint64_t last_scene_ = 0;
   Aabb world_{};
-  std::optional<FrameToTake> to_take_;
+  std::optional<PendingFrame> pending_frame_;
 };
 
 }  // namespace broadmark

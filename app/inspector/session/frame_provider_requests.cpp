@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The parameters that a recording was baked with; "": unknown. Only the frames have to be right.
+/// The parameters that a recording was baked with; "" if they are unknown or invalid.
 std::string parametersOf(const Recording& recording, const fs::path& path) {
   try {
     const std::string& stated = recording.origin().scene_parameters;
@@ -42,7 +42,7 @@ FrameProviderRequest simulationSource(Simulation& simulation, bool swept) {
 }
 
 FrameProviderRequest recordingSource(const fs::path& path, const std::string& hash, bool swept) {
-  // A bad one is an error at once, and changes nothing.
+  // Open the file here, too, so that an invalid one is reported at once.
   const std::string parameters = parametersOf(*openRecordingFile(path), path);
   const auto open = [path, hash, swept] {
     std::unique_ptr<Recording> recording = openRecordingFile(path);
@@ -63,7 +63,7 @@ FrameProviderRequest importSource(const RecordingReference& reference, bool swep
     ReadingOptions reading;
     setParameters(reading, reference.reading);
     const auto import = importOf(reference.path);
-    if (!import) throw InputError(fmt::format("{}: no longer there", reference.path));
+    if (!import) throw InputError(fmt::format("{}: no longer exists", reference.path));
     Source source = importedSource({reference.path}, *import, reading);
     return std::make_unique<FrameProvider>(std::move(source.imported), swept);
   };
@@ -83,11 +83,11 @@ ParameterValues sceneParametersOf(const FrameProviderRequest* source) {
 void Draft::choose(const std::string& id) {
   ParameterValues values = parameterValues(*scene_);
   scene_ = makeSimulation(id);
-  // What the user has probably chosen.
+  // Copy the parameters that the scenes may share.
   for (const char* shared : {"objects", "frames", "object_type", "seed", "engine"}) {
     const auto value = values.find(shared);
-    const ParameterValues there = parameterValues(*scene_);
-    if (value == values.end() || !there.contains(shared)) continue;
+    const ParameterValues supported = parameterValues(*scene_);
+    if (value == values.end() || !supported.contains(shared)) continue;
     setParameters(*scene_, {*value});
   }
 }

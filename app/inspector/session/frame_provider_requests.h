@@ -1,5 +1,5 @@
-// What asks the run thread to open something: a recording, an import, a simulation, which the user
-// may adjust first.
+// Requests to the run thread to open a recording, an import or a simulation, and the draft of a
+// simulation.
 #pragma once
 
 #include <filesystem>
@@ -14,33 +14,33 @@
 
 namespace broadmark {
 
-// `swept`: shown as swept boxes.
+// `swept`: show the frames as swept boxes.
 
-/// The simulation with its present parameters.
+/// Requests a simulation with the current parameters.
 FrameProviderRequest simulationSource(Simulation& simulation, bool swept);
-/// `hash`: the expected one; "": any. Throws InputError.
+/// `hash`: expected hash; "": any. Throws InputError.
 FrameProviderRequest recordingSource(const std::filesystem::path& path, const std::string& hash,
                                      bool swept);
 /// Throws InputError.
 FrameProviderRequest importSource(const RecordingReference& reference, bool swept);
 
-/// The parameters of the request's scene, "scene" among them, as far as they are known. Null: none.
+/// Returns the known parameters of the request's scene, including "scene"; none for null.
 ParameterValues sceneParametersOf(const FrameProviderRequest* source);
 
-/// The built-in scene that the user adjusts, and starts.
+/// The built-in scene whose parameters the user edits before starting it.
 class Draft {
  public:
-  /// `playback` outlives it.
+  /// `playback` must outlive this object.
   explicit Draft(Playback& playback) : playback_(playback) {}
 
   [[nodiscard]] Simulation& scene() const { return *scene_; }
-  /// Replaces it by another built-in scene, with the parameters that both have in common.
+  /// Replaces the scene by another built-in one, keeping the parameters that both have.
   void choose(const std::string& id);
-  void take(std::unique_ptr<Simulation> scene) { scene_ = std::move(scene); }
+  void adopt(std::unique_ptr<Simulation> scene) { scene_ = std::move(scene); }
 
-  /// Shows a live simulation with the present parameters.
+  /// Shows a live simulation with the current parameters.
   void simulate() { playback_.show(simulationSource(*scene_, playback_.swept)); }
-  /// Whether what is open is its simulation, or was baked with its parameters.
+  /// Whether the open source is this simulation, or was baked with these parameters.
   [[nodiscard]] bool isOpen() const;
 
  private:

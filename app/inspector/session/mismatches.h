@@ -1,4 +1,4 @@
-// Checking answers, stopping at a wrong one, and going on to the next.
+// Checking of answers: stops at mismatches, and searches for the next one.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,9 +18,9 @@
 
 namespace broadmark {
 
-/// The next frame after `frame` in which a track is known to be wrong.
-inline std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<TrackReport>& tracks,
-                                                          std::uint32_t frame) {
+/// Returns the next frame after `frame` in which a track has a recorded mismatch.
+inline std::optional<RunProgress::Stop> nextRecordedMismatch(const std::vector<TrackReport>& tracks,
+                                                             std::uint32_t frame) {
   std::optional<RunProgress::Stop> next;
   for (const TrackReport& track : tracks) {
     for (std::uint32_t index = frame + 1; index <= track.frames.size(); ++index) {
@@ -34,25 +34,25 @@ inline std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<Trac
 
 class Mismatches {
  public:
-  /// The parts it acts on outlive it.
+  /// The arguments must outlive this object.
   Mismatches(Playback& playback, TrackList& tracks, BodySelection& selection, Notices& notices)
       : playback_(playback), tracks_(tracks), selection_(selection), notices_(notices) {}
 
-  /// Takes note of a stop, and visits the first wrong pair once the frame is seen.
+  /// Handles a stop: shows its frame, then flies to the first wrong pair.
   void advance(const RunProgress& progress) {
-    noticeStop(progress);
+    handleStop(progress);
     if (!playback_.hasReached(progress)) return;
-    visitStop(*progress.snapshot);
+    flyToStop(*progress.snapshot);
     if (std::exchange(searching_, false)) {
-      notices_.say(fmt::format("no further mismatch up to frame {}", playback_.frame()));
+      notices_.setStatus(fmt::format("no further mismatch up to frame {}", playback_.frame()));
     }
   }
 
-  /// Goes on to the next frame in which an algorithm is wrong, running what has not been run yet.
+  /// Seeks the next frame with a wrong answer, running further frames if none is recorded.
   void goToNext(const RunProgress& progress) {
     playback_.pause();
     check = stop_at_mismatch = true;
-    if (const auto next = nextKnownMismatch(progress.tracks, playback_.frame())) {
+    if (const auto next = nextRecordedMismatch(progress.tracks, playback_.frame())) {
       playback_.seek(next->frame);
       tracks_.show(next->track);
       return;
@@ -61,77 +61,77 @@ class Mismatches {
     searching_ = true;
   }
 
-  /// Whether it is on the way to one.
+  /// Whether a search is running.
   [[nodiscard]] bool searching() const { return searching_; }
-  /// Stays where the algorithms have got to.
+  /// Stops at the last frame reached.
   void endSearch(const RunProgress& progress) {
     std::uint32_t reached = progress.snapshot ? progress.snapshot->frame : 0;
     for (const TrackReport& track : progress.tracks) reached = std::max(reached, track.frame);
     playback_.seek(std::min(reached, playback_.frame()));
   }
 
-  /// To be called when the user moves to another frame, which ends a search. After going on from a
-  /// mismatch that mismatch is known.
-  void moved(bool forward) {
-    if (forward && noticed_) known_ = noticed_->frame;
+  /// Call when the user moves to another frame: ends a search. Moving forward from a mismatch
+  /// acknowledges it.
+  void onFrameChange(bool forward) {
+    if (forward && handled_stop_) acknowledged_ = handled_stop_->frame;
     searching_ = false;
   }
 
-  /// To be called when the tracks have changed: forgets at which frame it stopped.
-  void forgetStop() {
-    known_.reset();
-    noticed_.reset();
+  /// Call when the tracks have changed: clears the stop.
+  void clearStop() {
+    acknowledged_.reset();
+    handled_stop_.reset();
   }
 
-  /// To be called when other source is shown: forgets everything.
+  /// Call when another source is shown: clears all state.
   void reset() {
-    forgetStop();
-    to_visit_.reset();
+    clearStop();
+    pending_stop_.reset();
     searching_ = false;
   }
 
   /// See ViewRequest.
-  [[nodiscard]] std::optional<std::uint32_t> known() const { return known_; }
+  [[nodiscard]] std::optional<std::uint32_t> acknowledged() const { return acknowledged_; }
 
   bool check = true;             ///< compare every answer with the oracle's
   bool stop_at_mismatch = true;  ///< while checking
 
  private:
-  void noticeStop(const RunProgress& progress) {
+  void handleStop(const RunProgress& progress) {
     if (!progress.stop) {
-      noticed_.reset();
+      handled_stop_.reset();
       return;
     }
     const auto [frame, number] = *progress.stop;
-    const bool is_known = known_ && *known_ >= frame;
-    if (is_known || (noticed_ && noticed_->frame == frame)) return;
+    const bool is_acknowledged = acknowledged_ && *acknowledged_ >= frame;
+    if (is_acknowledged || (handled_stop_ && handled_stop_->frame == frame)) return;
     playback_.goTo(frame);
     tracks_.show(number);
-    noticed_ = to_visit_ = progress.stop;
-    notices_.bringUp("Mismatches");
+    handled_stop_ = pending_stop_ = progress.stop;
+    notices_.raisePanel("Mismatches");
     const TrackEdit* wrong = tracks_.find(number);
-    notices_.say(fmt::format("{} is wrong in frame {}",
-                             wrong ? wrong->test_case.algorithm.id : "an algorithm", frame),
-                 Severity::error);
+    notices_.setStatus(fmt::format("{} is wrong in frame {}",
+                                   wrong ? wrong->test_case.algorithm.id : "an algorithm", frame),
+                       Severity::error);
   }
 
-  void visitStop(const Snapshot& seen) {
-    if (!to_visit_ || !seen.checked || seen.frame != to_visit_->frame ||
-        seen.track != to_visit_->track) {
+  void flyToStop(const Snapshot& snapshot) {
+    if (!pending_stop_ || !snapshot.checked || snapshot.frame != pending_stop_->frame ||
+        snapshot.track != pending_stop_->track) {
       return;
     }
-    to_visit_.reset();
-    const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
-    if (!wrong.empty()) selection_.visit(wrong.front().pair);
+    pending_stop_.reset();
+    const std::vector<WrongPair> wrong = wrongPairs(snapshot.difference);
+    if (!wrong.empty()) selection_.flyToPair(wrong.front().pair);
   }
 
   Playback& playback_;
   TrackList& tracks_;
   BodySelection& selection_;
   Notices& notices_;
-  std::optional<std::uint32_t> known_;
-  std::optional<RunProgress::Stop> noticed_;
-  std::optional<RunProgress::Stop> to_visit_;  ///< stopped at, not seen yet
+  std::optional<std::uint32_t> acknowledged_;
+  std::optional<RunProgress::Stop> handled_stop_;
+  std::optional<RunProgress::Stop> pending_stop_;  ///< its pair has not been shown yet
   bool searching_ = false;
 };
 

@@ -1,4 +1,4 @@
-// What the user is told: the status line, errors to acknowledge, panels that come to the front.
+// Messages to the user: the status line, errors to acknowledge, panels to raise.
 #pragma once
 
 #include <deque>
@@ -14,40 +14,40 @@ namespace broadmark {
 
 enum class Severity { note, warning, error };
 
-/// A line for the status bar.
+/// A message for the status bar.
 struct Message {
   Severity severity = Severity::note;
   std::string text;
 };
 
 struct Notices {
-  void say(std::string text, Severity severity = Severity::note) {
+  void setStatus(std::string text, Severity severity = Severity::note) {
     status = {severity, std::move(text)};
   }
-  /// An error that the user has to acknowledge.
-  void complain(std::string text) {
-    say(text, Severity::error);
+  /// Reports an error that the user has to acknowledge.
+  void reportError(std::string text) {
+    setStatus(text, Severity::error);
     errors.push_back(std::move(text));
   }
-  /// Does something, turning what it throws into an error. Returns whether all went well.
-  template <class Act>
-  bool attempt(const Act& act) {
+  /// Calls `action`, and reports its exception as an error. Returns whether it succeeded.
+  template <class Action>
+  bool catchErrors(const Action& action) {
     try {
-      act();
+      action();
       return true;
     } catch (...) {
-      complain(currentErrorText());
+      reportError(currentErrorText());
     }
     return false;
   }
   /// Brings a panel to the front in the next picture.
-  void bringUp(std::string panel) { wanted_panels.push_back(std::move(panel)); }
+  void raisePanel(std::string panel) { panels_to_raise.push_back(std::move(panel)); }
 
-  /// Called with each file that has been opened or saved.
-  std::function<void(const std::filesystem::path&)> on_file = [](const auto&) {};
+  /// Called with each opened or saved file.
+  std::function<void(const std::filesystem::path&)> on_file_used = [](const auto&) {};
   Message status;
   std::deque<std::string> errors;  ///< not yet acknowledged
-  std::vector<std::string> wanted_panels;
+  std::vector<std::string> panels_to_raise;
 };
 
 }  // namespace broadmark

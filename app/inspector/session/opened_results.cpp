@@ -14,7 +14,7 @@
 namespace broadmark {
 namespace {
 
-constexpr std::size_t kMarkedAtFirst = 4;
+constexpr std::size_t kMaxMarked = 4;
 
 using Row = OpenedResults::Row;
 
@@ -28,7 +28,7 @@ FrameValues secondsOf(const CaseResult& result, Phase phase) {
   for (std::size_t k = 0; k < frames; ++k) {
     seconds.clear();
     for (const Repetition& repetition : result.repetitions) {
-      if (k >= repetition.frames.size()) continue;  // it was interrupted
+      if (k >= repetition.frames.size()) continue;  // interrupted
       seconds.push_back(static_cast<double>(repetition.frames[k][phase]) * 1e-9);
     }
     values.set(static_cast<std::uint32_t>(k + 1), static_cast<float>(quantile(seconds, 0.5)));
@@ -42,7 +42,7 @@ FrameValues mismatchesOf(const CaseResult& result) {
   return values;
 }
 
-/// As recordingId(), without the size.
+/// recordingId() without the number of bodies.
 std::string sceneOf(const Row& row) {
   std::string id = row.recording;
   const std::string size = fmt::format("/N{}/", row.result.recording.scene.objects);
@@ -81,10 +81,10 @@ OpenedResults::OpenedResults(std::filesystem::path file, Results results,
     row.obstacle = obstacleTo(result, file_, algorithms);
     if (!result.repetitions.empty()) row.summary = result.summary();
     row.result = std::move(result);
-    row.marked = row.summary && marked < kMarkedAtFirst && row.recording == rows_.front().recording;
+    row.marked = row.summary && marked < kMaxMarked && row.recording == rows_.front().recording;
     marked += row.marked ? 1 : 0;
   }
-  list();
+  updateList();
 }
 
 const std::vector<OpenedResults::Curve>& OpenedResults::curves(Phase phase) {
@@ -110,7 +110,7 @@ const std::vector<ScalingCurve>& OpenedResults::scaling(Phase phase) {
 std::vector<ScalingCurve> OpenedResults::scalingCurves(Phase phase) const {
   std::vector<ScalingCurve> curves;
   std::vector<std::size_t> rows = listed_;
-  std::ranges::sort(rows);  // sorting the list changes no colour
+  std::ranges::sort(rows);  // keeps the colours when the list is sorted
   for (const std::size_t i : rows) {
     const CaseResult& result = rows_[i].result;
     const double seconds = result.meanSeconds(phase).value_or(0);
@@ -154,17 +154,17 @@ void OpenedResults::sort(std::string_view column, bool descending) {
   const auto found = std::ranges::find(columns, column, &CaseColumn::key);
   sorted_by_ = found == columns.end() ? nullptr : &*found;
   descending_ = descending;
-  list();
+  updateList();
 }
 
 void OpenedResults::filter(const std::string& text, bool only_wrong) {
   if (text == text_ && only_wrong == only_wrong_) return;
   text_ = text;
   only_wrong_ = only_wrong;
-  list();
+  updateList();
 }
 
-void OpenedResults::list() {
+void OpenedResults::updateList() {
   scaling_of_.reset();
   listed_.clear();
   for (std::size_t i = 0; i < rows_.size(); ++i) {

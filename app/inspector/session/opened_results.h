@@ -1,5 +1,4 @@
-// A results file that has been opened: which of its cases are listed, in which order, and which are
-// marked to be plotted.
+// An opened results file: the cases listed, their order, and the cases marked for plotting.
 #pragma once
 
 #include <algorithm>
@@ -17,50 +16,50 @@
 
 namespace broadmark {
 
-/// How the time of a frame of one algorithm, with the same parameters and threads, grows with the
-/// number of bodies of one scene.
+/// Frame time of an algorithm, with fixed parameters and threads, over the number of bodies of a
+/// scene.
 struct ScalingCurve {
   struct Point {
     std::uint32_t objects = 0;
     double seconds = 0;  ///< mean per frame, over all repetitions; above 0
     std::size_t row = 0;
   };
-  std::string algorithm;      ///< as short as tells it from all others
-  std::string scene;          ///< "Brownian/Cubes/F9"; "" where all curves are of the same
-  std::string case_name;      ///< as caseNameOf()
-  std::vector<Point> points;  ///< of at least two sizes, the smallest first
-  double exponent = 0;  ///< of seconds = factor · objects^exponent, by least squares of logarithms
+  std::string algorithm;      ///< id, or the case name if ids are ambiguous
+  std::string scene;          ///< "Brownian/Cubes/F9"; "" if all curves share the scene
+  std::string case_name;      ///< from caseNameOf()
+  std::vector<Point> points;  ///< of at least two sizes, ascending
+  double exponent = 0;        ///< of seconds = factor · objects^exponent, fitted to the logarithms
 };
 
 class OpenedResults {
  public:
   struct Row {
     CaseResult result;
-    std::string algorithm;           ///< as variantOf()
-    std::string recording;           ///< as recordingId()
-    std::optional<Summary> summary;  ///< nothing without any time
-    std::size_t mismatches = 0;      ///< frames
-    std::string obstacle;            ///< why it cannot be opened; "": nothing is known
+    std::string algorithm;           ///< from variantOf()
+    std::string recording;           ///< from recordingId()
+    std::optional<Summary> summary;  ///< nothing without measured times
+    std::size_t mismatches = 0;      ///< number of frames
+    std::string obstacle;            ///< why the case cannot be opened; "": none known
     bool marked = false;             ///< set by mark()
   };
-  /// A marked case over its frames.
+  /// The frame times of a marked case.
   struct Curve {
     std::size_t row = 0;
-    FrameValues seconds;     ///< of a phase: the median of the repetitions
-    FrameValues mismatches;  ///< 1 in frames that are one, unknown in others
+    FrameValues seconds;     ///< of a phase: median of the repetitions
+    FrameValues mismatches;  ///< 1 in frames with a wrong answer, unknown in others
   };
 
-  /// Marks a few cases of one recording to begin with. `algorithms`: those that can be run.
+  /// Marks a few cases of one recording initially. `algorithms`: the available ones.
   OpenedResults(std::filesystem::path file, Results results,
                 const std::vector<Algorithm>& algorithms);
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// Whether the run came to its end.
+  /// Whether the run was completed.
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// How many cases gave a wrong answer.
-  [[nodiscard]] std::size_t wrong() const {
+  /// Number of cases with a wrong answer.
+  [[nodiscard]] std::size_t wrongCount() const {
     return static_cast<std::size_t>(
         std::ranges::count_if(rows_, [](const Row& row) { return row.mismatches > 0; }));
   }
@@ -68,29 +67,28 @@ class OpenedResults {
     rows_[row].marked = on;
     curves_of_.reset();
   }
-  /// Of the marked rows that have times, in the order of the file. Made when first asked for.
+  /// The curves of the marked rows with times, in the order of the file. Computed on demand.
   const std::vector<Curve>& curves(Phase phase);
-  /// Curves of the listed rows, in the order of the file; valid until the list changes. Only
-  /// complete cases with right answers have points, and only where the phase took time.
+  /// The curves of the listed rows, in the order of the file; valid until the list changes. Only
+  /// complete, correct cases with a measured time of the phase have points.
   const std::vector<ScalingCurve>& scaling(Phase phase);
 
-  /// The numbers of the rows to be shown, in order.
+  /// Indices of the listed rows, in display order.
   [[nodiscard]] const std::vector<std::size_t>& listed() const { return listed_; }
-  /// By the column with this key; "": as in the file. Cases without the value come last, either
-  /// way.
+  /// Sorts by the column with this key; "": as in the file. Cases without a value always come last.
   void sort(std::string_view column, bool descending);
   /// Lists only cases with the text in their id and, if `only_wrong`, with a wrong answer.
   void filter(const std::string& text, bool only_wrong);
 
  private:
-  void list();
+  void updateList();
   [[nodiscard]] std::vector<ScalingCurve> scalingCurves(Phase phase) const;
 
   std::filesystem::path file_;
   bool complete_ = false;
   std::vector<Row> rows_;
   std::vector<std::size_t> listed_;
-  const CaseColumn* sorted_by_ = nullptr;  ///< null: as in the file
+  const CaseColumn* sorted_by_ = nullptr;  ///< null: file order
   bool descending_ = false;
   std::string text_;
   bool only_wrong_ = false;

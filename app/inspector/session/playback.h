@@ -1,4 +1,4 @@
-// What is played: which source, at which frame, and how it moves on.
+// The playback: its source, its current frame, and how it advances.
 #pragma once
 
 #include <algorithm>
@@ -17,94 +17,94 @@ namespace broadmark {
 
 class Playback {
  public:
-  /// Shows other source, from frame 0 on.
+  /// Shows another source, starting at frame 0.
   void show(FrameProviderRequest source) {
     source_ = std::make_shared<const FrameProviderRequest>(std::move(source));
     frame_ = 0;
-    due_ = 0;
+    frames_due_ = 0;
     scene_ = {};
-    scene_known_ = false;
-    on_show();
+    scene_loaded_ = false;
+    on_source_change();
   }
 
-  /// Returns to what has been shown before.
-  void showAgain(std::shared_ptr<const FrameProviderRequest> source, std::uint32_t frame) {
+  /// Returns to a previous source and frame.
+  void restore(std::shared_ptr<const FrameProviderRequest> source, std::uint32_t frame) {
     source_ = std::move(source);
     frame_ = frame;
-    scene_known_ = false;
+    scene_loaded_ = false;
   }
 
   // Frames out of range are clamped.
-  /// Plays or pauses. After the last frame it plays from the first.
+  /// Plays or pauses. At the last frame, playing restarts from the first.
   void play(bool on) {
     if (on && frame_ == scene_.frames && scene_.frames > 0) frame_ = 0;
-    if (on) on_move(true);
+    if (on) on_frame_change(true);
     playing_ = on;
-    due_ = 0;
+    frames_due_ = 0;
   }
 
   void pause() { playing_ = false; }
   void seek(std::int64_t frame) {
-    // What is only being opened may have any number of frames; follow() sets it right then.
+    // The number of frames is unknown while the source is being opened; update() clamps it then.
     const std::int64_t last =
-        scene_known_ ? scene_.frames : std::numeric_limits<std::int32_t>::max();
-    const auto wanted = static_cast<std::uint32_t>(std::clamp<std::int64_t>(frame, 0, last));
-    on_move(wanted > frame_);
-    frame_ = wanted;
+        scene_loaded_ ? scene_.frames : std::numeric_limits<std::int32_t>::max();
+    const auto target = static_cast<std::uint32_t>(std::clamp<std::int64_t>(frame, 0, last));
+    on_frame_change(target > frame_);
+    frame_ = target;
   }
 
-  /// Pauses, and goes to a frame.
+  /// Pauses, and seeks a frame.
   void goTo(std::int64_t frame) {
     pause();
     seek(frame);
   }
 
-  /// Goes on by this number of frames; back if negative.
+  /// Pauses, and steps by this number of frames; backwards if negative.
   void step(int frames) { goTo(std::int64_t{frame_} + frames); }
 
-  /// Takes note of what is open. Returns whether that is the requested source.
-  bool follow(const RunProgress& progress) {
+  /// Reads the scene of the open source. Returns whether that source is the requested one.
+  bool update(const RunProgress& progress) {
     if (!source_ || progress.source != source_) return false;
     scene_ = progress.scene;
-    scene_known_ = true;
+    scene_loaded_ = true;
     frame_ = std::min(frame_, scene_.frames);
     return true;
   }
 
   /// Whether the requested frame is computed and shown.
   [[nodiscard]] bool hasReached(const RunProgress& progress) const {
-    return progress.doing.empty() && progress.snapshot && progress.snapshot->source == source_ &&
+    return progress.activity.empty() && progress.snapshot && progress.snapshot->source == source_ &&
            progress.snapshot->frame == frame_;
   }
 
-  /// While it plays: counts frames, and moves on by `seconds` once the requested frame is reached.
+  /// While playing: measures the frame rate, and advances once the requested frame is reached.
   void advance(const RunProgress& progress, double seconds) {
     if (!playing_) {
-      achieved_.reset();
-      counted_seconds_ = counted_frames_ = 0;
+      achieved_rate_.reset();
+      window_seconds_ = window_frames_ = 0;
       return;
     }
-    counted_seconds_ += seconds;
-    if (counted_seconds_ >= kCountedSeconds) {
-      achieved_ = counted_frames_ / counted_seconds_;
-      counted_seconds_ = counted_frames_ = 0;
+    window_seconds_ += seconds;
+    if (window_seconds_ >= kRateWindowSeconds) {
+      achieved_rate_ = window_frames_ / window_seconds_;
+      window_seconds_ = window_frames_ = 0;
     }
     if (!hasReached(progress)) return;
-    due_ += seconds * frames_per_second;
-    if (due_ < 1) return;
-    const double frames = std::floor(due_);
-    due_ = std::min(due_ - frames, 1.0);
-    ++counted_frames_;
+    frames_due_ += seconds * frames_per_second;
+    if (frames_due_ < 1) return;
+    const double frames = std::floor(frames_due_);
+    frames_due_ = std::min(frames_due_ - frames, 1.0);
+    ++window_frames_;
     if (frame_ < scene_.frames) {
-      seek(frame_ + static_cast<std::int64_t>(std::min(frames, kMaxFramesAtOnce)));
+      seek(frame_ + static_cast<std::int64_t>(std::min(frames, kMaxFramesPerStep)));
     } else if (loop) {
       frame_ = 0;
     } else {
       pause();
     }
   }
-  /// How many frames were shown per second of late; nothing while it does not play.
-  [[nodiscard]] std::optional<double> achieved() const { return achieved_; }
+  /// Frames shown per second recently; nothing while paused.
+  [[nodiscard]] std::optional<double> achievedRate() const { return achieved_rate_; }
 
   /// The requested source; null: none.
   [[nodiscard]] const std::shared_ptr<const FrameProviderRequest>& source() const {
@@ -112,35 +112,35 @@ class Playback {
   }
   /// The requested frame.
   [[nodiscard]] std::uint32_t frame() const { return frame_; }
-  /// Of the source, once it is open.
+  /// The scene of the source, once it is open.
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
   [[nodiscard]] std::uint32_t lastFrame() const { return scene_.frames; }
   [[nodiscard]] bool playing() const { return playing_; }
 
   bool loop = false;
-  bool swept = false;             ///< what is opened is shown as swept boxes
-  double frames_per_second = 30;  ///< no more; an algorithm may need longer
+  bool swept = false;             ///< show sources as swept boxes
+  double frames_per_second = 30;  ///< upper limit; algorithms may be slower
 
   // Set by the owner.
-  std::function<void()> on_show;
-  /// Called by play() and seek(), with whether that leads to later frames.
-  std::function<void(bool forward)> on_move;
+  std::function<void()> on_source_change;
+  /// Called by play() and seek(). `forward`: to later frames.
+  std::function<void(bool forward)> on_frame_change;
 
  private:
   /// Averaging window of the achieved frame rate.
-  static constexpr double kCountedSeconds = 1;
-  /// What cannot keep pace leaves out no more than this.
-  static constexpr double kMaxFramesAtOnce = 4;
+  static constexpr double kRateWindowSeconds = 1;
+  /// Maximum advance per step; a slow playback skips frames.
+  static constexpr double kMaxFramesPerStep = 4;
 
   std::shared_ptr<const FrameProviderRequest> source_;
   std::uint32_t frame_ = 0;
   SceneInfo scene_;
-  bool scene_known_ = false;  ///< the source has been opened
+  bool scene_loaded_ = false;  ///< the source has been opened
   bool playing_ = false;
-  double due_ = 0;  ///< of the next frame, as a share of its time
-  std::optional<double> achieved_;
-  double counted_seconds_ = 0;
-  int counted_frames_ = 0;
+  double frames_due_ = 0;  ///< elapsed time, in frames
+  std::optional<double> achieved_rate_;
+  double window_seconds_ = 0;
+  int window_frames_ = 0;
 };
 
 }  // namespace broadmark

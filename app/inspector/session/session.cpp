@@ -14,31 +14,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maximum bodies shown over the last frames.
+/// Maximum number of bodies with trails.
 constexpr std::size_t kMaxTrails = 2;
 
 }  // namespace
 
-Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_host)
-    : tracks(std::move(algorithms)), jobs(make_host), runs(std::move(make_host)) {
-  playback.on_show = [this] {
+Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_executor)
+    : tracks(std::move(algorithms)), jobs(make_executor), runs(std::move(make_executor)) {
+  playback.on_source_change = [this] {
     selection.reset();
     mismatches.reset();
     if (second) second->frame.reset();
-    noticed_failure_.clear();
-    notices.status = {};  // it told of what was open before
+    reported_failure_.clear();
+    notices.status = {};  // the message was about the previous source
   };
-  playback.on_move = [this](bool forward) { mismatches.moved(forward); };
-  tracks.on_change = [this] { mismatches.forgetStop(); };
+  playback.on_frame_change = [this](bool forward) { mismatches.onFrameChange(forward); };
+  tracks.on_change = [this] { mismatches.clearStop(); };
 }
 
 void Session::advance(const RunProgress& progress, double seconds) {
-  noticeJobs();
-  known_frames_ = progress.known_frames;
-  frames_ = progress.source == playback.source() ? progress.frames : nullptr;
-  if (!playback.follow(progress)) return;
-  timeline.follow(playback.source(), playback.lastFrame(), playback.frame());
-  noticeFailure(progress);
+  reportFinishedJobs();
+  available_frames_ = progress.available_frames;
+  open_frames_ = progress.source == playback.source() ? progress.frames : nullptr;
+  if (!playback.update(progress)) return;
+  timeline.update(playback.source(), playback.lastFrame(), playback.frame());
+  reportFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
   playback.advance(progress, seconds);
@@ -53,7 +53,7 @@ ViewRequest Session::request() const {
                       .playing = playback.playing(),
                       .check = mismatches.check,
                       .stop_at_mismatch = mismatches.stop_at_mismatch,
-                      .known_mismatch = mismatches.known(),
+                      .acknowledged = mismatches.acknowledged(),
                       .shown_track = tracks.shown(),
                       .structure = display.structure || display.colourMode().of_tests,
                       .trail_bodies = selection.bodies(),
@@ -62,34 +62,34 @@ ViewRequest Session::request() const {
   return request;
 }
 
-void Session::commit() {
-  if (ViewRequest now = request(); now != committed_) {
+void Session::postRequest() {
+  if (ViewRequest now = request(); now != posted_request_) {
     runs.request(now);
-    committed_ = std::move(now);
+    posted_request_ = std::move(now);
   }
 }
 
-void Session::noticeFailure(const RunProgress& progress) {
-  if (progress.failure == noticed_failure_) return;
-  noticed_failure_ = progress.failure;
+void Session::reportFailure(const RunProgress& progress) {
+  if (progress.failure == reported_failure_) return;
+  reported_failure_ = progress.failure;
   if (progress.failure.empty()) return;
   playback.pause();
-  notices.complain(progress.failure);
+  notices.reportError(progress.failure);
 }
 
-void Session::noticeJobs() {
+void Session::reportFinishedJobs() {
   for (Job* const job : jobs.all()) {
-    if (!job->takeEnd()) continue;
-    const JobStatus ended = job->status();
-    if (!ended.failure.empty()) notices.complain(ended.failure);
-    if (ended.outcome.empty()) continue;
-    notices.say(ended.outcome, ended.faulty ? Severity::error : Severity::note);
+    if (!job->consumeFinished()) continue;
+    const JobStatus status = job->status();
+    if (!status.failure.empty()) notices.reportError(status.failure);
+    if (status.outcome.empty()) continue;
+    notices.setStatus(status.outcome, status.is_error ? Severity::error : Severity::note);
   }
 }
 
 void Session::play(bool on) {
   if (on && !playback.source()) {
-    notices.say("nothing is open: simulate a scene, or open a file", Severity::warning);
+    notices.setStatus("nothing is open: simulate a scene, or open a file", Severity::warning);
     return;
   }
   if (on && document.atRest()) document.simulate();
@@ -97,14 +97,14 @@ void Session::play(bool on) {
 }
 
 void Session::saveRecording(const fs::path& path) {
-  notices.attempt([&] {
-    if (!frames_) throw InputError("nothing is open");
-    const auto frames = frames_(known_frames_);
+  notices.catchErrors([&] {
+    if (!open_frames_) throw InputError("nothing is open");
+    const auto frames = open_frames_(available_frames_);
     RecordingWriter writer(path, frames->scene());
     recordAll(*frames, writer);
     writer.finish();
-    notices.say(fmt::format("recorded: {}", path.string()));
-    notices.on_file(path);
+    notices.setStatus(fmt::format("recorded: {}", path.string()));
+    notices.on_file_used(path);
   });
 }
 
@@ -112,23 +112,23 @@ void Session::exportCase(const Case& test_case, std::shared_ptr<const Snapshot> 
                          fs::path file) {
   const SceneInfo scene = playback.scene();
   if (!file.has_extension()) file += recordingExtension(scene);
-  notices.attempt([&] {
+  notices.catchErrors([&] {
     requireExportable(file, snapshot->source->recording, scene);
-    if (!frames_ || snapshot->source != playback.source()) {
+    if (!open_frames_ || snapshot->source != playback.source()) {
       throw InputError("exporting a case: another scene has been opened");
     }
-    startExport(jobs.get<CaseExport>(), test_case, frames_(snapshot->frame), snapshot->difference,
-                file, jobs.make_host);
+    startExport(jobs.get<CaseExport>(), test_case, open_frames_(snapshot->frame),
+                snapshot->difference, file, jobs.make_executor);
   });
 }
 
 void Session::startDuel(double max_seconds) {
-  notices.attempt([&] {
-    if (!frames_) throw InputError("duel: nothing is open");
+  notices.catchErrors([&] {
+    if (!open_frames_) throw InputError("duel: nothing is open");
     std::vector<Case> cases;
     for (const TrackSpec& track : tracks.specs()) cases.push_back(track.test_case);
-    broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), max_seconds,
-                         jobs.make_host);
+    broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, open_frames_(available_frames_),
+                         max_seconds, jobs.make_executor);
   });
 }
 
@@ -139,12 +139,12 @@ void Session::showSecond(bool on) {
   const auto other = std::ranges::find_if(
       tracks.list, [this](const TrackEdit& track) { return track.number != tracks.shown(); });
   if (other != tracks.list.end()) second->track = other->number;
-  // Without another algorithm's answer it is the same one's, and stays where it is.
+  // Without another answer to show, freeze the current frame in the second view.
   if (other == tracks.list.end() && tracks.shown() == 0) second->frame = playback.frame();
 }
 
-void Session::showBeside(const fs::path& recording) {
-  notices.attempt([&] {
+void Session::openInSecondView(const fs::path& recording) {
+  notices.catchErrors([&] {
     FrameProviderRequest source = recordingSource(recording, {}, playback.swept);
     second =
         SecondViewRequest{.source = std::make_shared<const FrameProviderRequest>(std::move(source)),

@@ -1,4 +1,4 @@
-// What the inspector is about, without any drawing: the parts, and what connects them.
+// The inspector's model, without any drawing: its parts, and the operations that combine them.
 #pragma once
 
 #include <filesystem>
@@ -23,52 +23,51 @@
 
 namespace broadmark {
 
-/// Owns the parts, hands their requests to the run thread, and does what takes several of them.
+/// Owns the parts, posts their combined request to the run thread, and implements operations that
+/// involve several of them.
 class Session {
  public:
-  /// Algorithms that can be chosen, and where they run.
-  explicit Session(std::vector<Algorithm> algorithms, ExecutorFactory make_host = makeLocalHost);
+  /// The available algorithms, and the factory of the executors that run them.
+  explicit Session(std::vector<Algorithm> algorithms,
+                   ExecutorFactory make_executor = makeInProcessExecutor);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Once per picture: takes note of the progress, and moves the playback on.
+  /// Call once per picture: processes the progress, and advances the playback.
   void advance(const RunProgress& progress, double seconds);
-  /// Hands the request to the run thread if it has changed. Not inside RunThread::readProgress().
-  void commit();
-  /// Whether anything goes on by itself.
+  /// Posts the request to the run thread if it has changed. Not inside RunThread::readProgress().
+  void postRequest();
+  /// Whether playback, algorithms or jobs are running.
   [[nodiscard]] bool busy();
 
-  /// Plays or pauses; a document at rest begins to move.
+  /// Plays or pauses; playing a document at rest simulates it.
   void play(bool on);
-  /// Writes the frames known so far as a recording.
+  /// Saves the available frames as a recording.
   void saveRecording(const std::filesystem::path& path);
-  /// Begins to shrink and write the case that is wrong in this snapshot; `file` gets its extension
-  /// if it has none.
+  /// Starts to export the case that is wrong in this snapshot; adds a missing extension to `file`.
   void exportCase(const Case& test_case, std::shared_ptr<const Snapshot> snapshot,
                   std::filesystem::path file);
-  /// Starts a duel of the tracks on the known frames, for at most this number of seconds.
+  /// Starts a duel of the tracks on the available frames, with this time limit.
   void startDuel(double max_seconds);
 
   // Opening: see opener.cpp.
-  /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
-  /// file all cases are listed; of a file that names a case, that becomes the only track.
+  /// Opens a file of any kind that openSource() supports; reports errors. Lists the cases of a
+  /// results file; makes the case named by a file the only track.
   void open(const std::filesystem::path& path);
-  /// Opens the first entry with its cases as tracks, or lists those of results; without either
-  /// there are only tracks. Throws InputError.
+  /// Opens the plan's first entry with its cases as tracks, or lists the cases of its results, or
+  /// only adds tracks. Throws InputError.
   void open(Plan plan);
-  /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
-  /// error.
+  /// Opens a case of a results file at its first frame with a wrong answer. Reports errors.
   void openCase(const std::filesystem::path& file, const std::string& id);
-  /// Opens a row of the listed results in the same way. Why it cannot be opened is kept there, and
-  /// said.
+  /// Opens a row of the results in the same way. Stores an error in the row, and reports it.
   void openCase(OpenedResults::Row& row);
-  /// Opens what has been exported, at the wrong frame.
+  /// Opens an exported case at the wrong frame.
   void openExport(const ExportReport& report);
 
-  /// Shows another algorithm's answer in the second view if there is one, or closes that view.
+  /// Opens the second view, with another algorithm's answer if there is one, or closes it.
   void showSecond(bool on);
-  /// Shows a recording in the second view. A bad one becomes an error.
-  void showBeside(const std::filesystem::path& recording);
+  /// Shows a recording in the second view. Reports errors.
+  void openInSecondView(const std::filesystem::path& recording);
 
   Notices notices;
   Playback playback;
@@ -80,26 +79,26 @@ class Session {
   Mismatches mismatches{playback, tracks, selection, notices};
   Draft draft{playback};
   DisplayOptions display;
-  std::optional<SecondViewRequest> second;  ///< nothing: there is no second view
+  std::optional<SecondViewRequest> second;  ///< nothing: no second view
   bool cameras_linked = true;               ///< one camera moves both views
-  std::optional<OpenedResults> results;     ///< the latest; what is played may be of others
+  std::optional<OpenedResults> results;     ///< latest opened results
   RunThread runs;
 
  private:
-  /// How an authored scene is shown first.
-  enum class Opened { at_rest, in_motion };
-  void openEntry(PlanEntry entry, Opened document_is);
-  void enter(PlanEntry& entry, Opened document_is);
-  void enterSource(PlanEntry& entry, Opened document_is);
-  void listCases(const std::filesystem::path& file, Results listed);
+  /// Initial state of an opened document.
+  enum class DocumentStart { at_rest, in_motion };
+  void openEntry(PlanEntry entry, DocumentStart start);
+  void loadEntry(PlanEntry& entry, DocumentStart start);
+  void loadSource(PlanEntry& entry, DocumentStart start);
+  void showResults(const std::filesystem::path& file, Results listed);
   [[nodiscard]] ViewRequest request() const;
-  void noticeFailure(const RunProgress& progress);
-  void noticeJobs();
+  void reportFailure(const RunProgress& progress);
+  void reportFinishedJobs();
 
-  std::string noticed_failure_;
-  std::uint32_t known_frames_ = 0;
-  FrameOpener frames_;  ///< opens those of what is played; null: nothing is open
-  ViewRequest committed_;
+  std::string reported_failure_;
+  std::uint32_t available_frames_ = 0;
+  FrameOpener open_frames_;  ///< opens the playback's frames; null: nothing is open
+  ViewRequest posted_request_;
 };
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Lists as they are typed: words between commas or spaces.
+// Lists typed by the user, separated by commas or spaces.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace broadmark {
 
-/// "kd, sap*"
-std::vector<std::string> wordsIn(std::string text);
+/// Splits a list: "kd, sap*".
+std::vector<std::string> parseWords(std::string text);
 
-/// "1000, 8000": `what`, each from 1 to `most`. Throws InputError.
-std::vector<std::uint32_t> countsIn(const std::string& text, std::string_view what,
-                                    std::uint32_t most);
+/// Parses counts from 1 to `max`: "1000, 8000". `what` names them in errors. Throws InputError.
+std::vector<std::uint32_t> parseCounts(const std::string& text, std::string_view what,
+                                       std::uint32_t max);
 
-/// Ids, "17, 40-50": `what`, each at most `last`. Throws InputError.
+/// Parses ids and ranges up to `last`: "17, 40-50". `what` names them in errors. Throws InputError.
 std::vector<std::uint32_t> parseIds(const std::string& text, std::string_view what,
                                     std::uint32_t last);
 

@@ -1,4 +1,4 @@
-// Which frames of a recording the timeline shows, and which span of them is selected.
+// The visible and the selected range of frames in the timeline.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace broadmark {
 
-/// Frames in a row, both ends included.
+/// A range of frames, both ends included.
 struct FrameSpan {
   std::uint32_t first = 0;
   std::uint32_t last = 0;
@@ -20,12 +20,11 @@ struct FrameSpan {
   friend bool operator==(const FrameSpan&, const FrameSpan&) = default;
 };
 
-/// Zoom and span belong to the source: other source is shown as a whole.
+/// Zoom and span are reset when the source changes.
 class Timeline {
  public:
-  /// Takes note of what is played, and at which frame. A frame that was moved to is in sight from
-  /// then on.
-  void follow(const std::shared_ptr<const FrameProviderRequest>& source, std::uint32_t last_frame,
+  /// Sets the source and the current frame. If the frame has changed, scrolls it into view.
+  void update(const std::shared_ptr<const FrameProviderRequest>& source, std::uint32_t last_frame,
               std::uint32_t frame) {
     if (std::exchange(source_, source) != source || last_frame_ != last_frame) {
       last_frame_ = last_frame;
@@ -39,22 +38,22 @@ class Timeline {
     if (frame < first_) show(frame - (1 - kMargin) * extent, extent);
   }
 
-  /// The frames shown, perhaps only parts of the first and last one; `first` < `last`.
+  /// The visible range, possibly fractional; `first` < `last`.
   [[nodiscard]] double first() const { return first_; }
   [[nodiscard]] double last() const { return last_; }
-  [[nodiscard]] bool zoomed() const { return last_ - first_ < whole(); }
+  [[nodiscard]] bool zoomed() const { return last_ - first_ < fullExtent(); }
 
-  /// Zooms in by this number of wheel notches (negative: out); the frame at `at` stays in place.
-  void zoom(double turns, double at) {
-    const double extent = allowed((last_ - first_) * std::pow(kExtentPerTurn, turns));
-    const double share = (at - first_) / (last_ - first_);
-    show(at - share * extent, extent);
+  /// Zooms in by wheel notches (negative: out), about frame `at`.
+  void zoom(double notches, double at) {
+    const double extent = clampExtent((last_ - first_) * std::pow(kZoomPerNotch, notches));
+    const double fraction = (at - first_) / (last_ - first_);
+    show(at - fraction * extent, extent);
   }
 
   /// Scrolls by this number of frames.
-  void move(double frames) { show(first_ + frames, last_ - first_); }
-  void showAll() { show(0, whole()); }
-  /// Shows just the span. There must be one.
+  void scroll(double frames) { show(first_ + frames, last_ - first_); }
+  void showAll() { show(0, fullExtent()); }
+  /// Zooms to the span, which must exist.
   void showSpan() {
     const double extent = std::max<double>(span_->last - span_->first, kMinFrames);
     const double middle = (static_cast<double>(span_->first) + span_->last) / 2;
@@ -62,36 +61,35 @@ class Timeline {
   }
 
   [[nodiscard]] const std::optional<FrameSpan>& span() const { return span_; }
-  /// Selects the existing frames between both ends, given in any order. Frame 0 is not timed and
-  /// never in a span.
+  /// Selects the frames between both ends, given in any order. Excludes frame 0, which is not
+  /// timed.
   void select(double from, double to) {
     if (last_frame_ == 0) return;
     const auto frame = [&](double at) {
-      return static_cast<std::uint32_t>(std::clamp<double>(std::round(at), 1, whole()));
+      return static_cast<std::uint32_t>(std::clamp<double>(std::round(at), 1, fullExtent()));
     };
     span_ = {.first = frame(std::min(from, to)), .last = frame(std::max(from, to))};
   }
 
   void clearSpan() { span_.reset(); }
 
-  double budget_ms = 16.7;  ///< that a frame may take; 0: any
+  double budget_ms = 16.7;  ///< time budget per frame; 0: none
 
  private:
-  static constexpr double kMinFrames = 4;  // shown at once
-  static constexpr double kExtentPerTurn = 0.8;
-  static constexpr double kMargin =
-      0.1;  // share of what is shown, beyond a frame that comes into sight
+  static constexpr double kMinFrames = 4;  ///< minimum visible range
+  static constexpr double kZoomPerNotch = 0.8;
+  static constexpr double kMargin = 0.1;  ///< beyond a frame scrolled into view, as a fraction
 
-  /// How much there is to be shown.
-  [[nodiscard]] double whole() const { return std::max<double>(last_frame_, 1); }
-  /// The nearest to `extent` frames that can be shown at once.
-  [[nodiscard]] double allowed(double extent) const {
-    return std::clamp(extent, std::min(kMinFrames, whole()), whole());
+  /// Length of the whole timeline.
+  [[nodiscard]] double fullExtent() const { return std::max<double>(last_frame_, 1); }
+  /// Clamps the length of the visible range.
+  [[nodiscard]] double clampExtent(double extent) const {
+    return std::clamp(extent, std::min(kMinFrames, fullExtent()), fullExtent());
   }
 
   void show(double first, double extent) {
-    extent = allowed(extent);
-    first_ = std::clamp(first, 0.0, whole() - extent);
+    extent = clampExtent(extent);
+    first_ = std::clamp(first, 0.0, fullExtent() - extent);
     last_ = first_ + extent;
   }
 

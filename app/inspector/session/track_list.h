@@ -15,14 +15,14 @@
 
 namespace broadmark {
 
-/// An algorithm in the list, as it is edited. What runs is its case.
+/// A track being edited. applyEdits() copies the parameters to its case, which is run.
 struct TrackEdit : TrackSpec {
-  std::unique_ptr<BroadPhase> parameters;  ///< holds their values; never run
+  std::unique_ptr<BroadPhase> parameters;  ///< edited parameter values; never run
 };
 
 class TrackList {
  public:
-  /// `algorithms`: those that can be chosen.
+  /// `algorithms`: the available ones.
   explicit TrackList(std::vector<Algorithm> algorithms) : algorithms_(std::move(algorithms)) {}
 
   [[nodiscard]] const std::vector<Algorithm>& algorithms() const { return algorithms_; }
@@ -33,29 +33,29 @@ class TrackList {
         makeCase(requireAlgorithm(algorithm_id, algorithms_), bestIsa(), allCores(), {}, {}));
   }
 
-  /// Throws InputError for bad parameters.
+  /// Adds a case. Throws InputError for invalid parameters.
   TrackEdit& add(const Case& test_case) {
     list.push_back({{.number = last_number_ + 1, .test_case = test_case}, makeInstance(test_case)});
     ++last_number_;
     if (list.size() == 1) shown_ = last_number_;
-    changed();
+    applyEdits();
     return list.back();
   }
 
   void remove(int number) {
     std::erase_if(list, [&](const TrackEdit& edit) { return edit.number == number; });
     if (shown_ == number) shown_ = list.empty() ? 0 : list.front().number;
-    changed();
+    applyEdits();
   }
 
   void clear() {
     list.clear();
     shown_ = 0;
-    changed();
+    applyEdits();
   }
 
-  /// To be called after tracks were edited: takes over their parameters.
-  void changed() {
+  /// Call after editing tracks: copies their parameters to the cases.
+  void applyEdits() {
     for (TrackEdit& track : list) {
       Case& test_case = track.test_case;
       ParameterValues values =
@@ -66,17 +66,17 @@ class TrackList {
     on_change();
   }
 
-  /// Null if there is none of this number.
+  /// Returns the track with this number, or null.
   [[nodiscard]] TrackEdit* find(int number) {
     const auto found = std::ranges::find(list, number, &TrackEdit::number);
     return found == list.end() ? nullptr : &*found;
   }
 
-  /// Number of the track of the shown answer; 0: the oracle's.
+  /// Number of the track with the shown answer; 0: the oracle's.
   [[nodiscard]] int shown() const { return shown_; }
   void show(int number) { shown_ = number; }
 
-  /// What is to run.
+  /// The tracks to run.
   [[nodiscard]] std::vector<TrackSpec> specs() const { return {list.begin(), list.end()}; }
 
   std::vector<TrackEdit> list;

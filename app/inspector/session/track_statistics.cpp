@@ -26,8 +26,8 @@ SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& distur
 }
 
 TimeRatios ratiosOf(const TrackReport& first, const TrackReport& second) {
-  TimeRatios of;
-  std::vector<double> all;
+  TimeRatios result;
+  std::vector<double> ratios;
   const std::size_t frames = std::min(first.frames.size(), second.frames.size());
   for (std::uint32_t frame = 1; frame <= frames; ++frame) {
     const FrameRecord* const a = first.record(frame);
@@ -35,15 +35,15 @@ TimeRatios ratiosOf(const TrackReport& first, const TrackReport& second) {
     if (a == nullptr || b == nullptr || a->disturbed || b->disturbed) continue;
     const double ratio = static_cast<double>(std::max<std::int64_t>(a->times[Phase::total], 1)) /
                          static_cast<double>(std::max<std::int64_t>(b->times[Phase::total], 1));
-    of.ratios.set(frame, static_cast<float>(ratio));
-    all.push_back(ratio);
-    if (ratio > 1) ++of.first_slower;
-    if (ratio < 1) ++of.second_slower;
-    if (!of.highest || ratio > of.highest->ratio) of.highest = {frame, ratio};
-    if (!of.lowest || ratio < of.lowest->ratio) of.lowest = {frame, ratio};
+    result.ratios.set(frame, static_cast<float>(ratio));
+    ratios.push_back(ratio);
+    if (ratio > 1) ++result.first_slower;
+    if (ratio < 1) ++result.second_slower;
+    if (!result.highest || ratio > result.highest->ratio) result.highest = {frame, ratio};
+    if (!result.lowest || ratio < result.lowest->ratio) result.lowest = {frame, ratio};
   }
-  if (!all.empty()) of.median = quantile(all, 0.5);
-  return of;
+  if (!ratios.empty()) result.median = quantile(ratios, 0.5);
+  return result;
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// What algorithms took: one in a span of frames, or two beside each other.
+// Statistics of a track in a span of frames, and ratios of two tracks.
 #pragma once
 
 #include <cstddef>
@@ -12,33 +12,32 @@
 namespace broadmark {
 
 struct SpanStatistics {
-  std::vector<double> values;  ///< of the frames that were run and not disturbed, sorted
-  std::size_t disturbed = 0;   ///< frames that were left out for that
+  std::vector<double> values;  ///< of the frames that were run undisturbed, sorted
+  std::size_t disturbed = 0;   ///< number of disturbed frames, which are excluded
   double total = 0;
 };
 
-/// Of the values of some frames. O(n log n) for a span of n.
+/// Computes the statistics of a curve in a span. O(n log n) for n frames.
 SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& disturbed,
                             FrameSpan span);
 
-/// Which of two algorithms is slower, and in which frames.
+/// Frame times of a first track relative to a second.
 struct TimeRatios {
-  /// A frame, and how many times as long the first algorithm took there as the second.
+  /// A frame, and its ratio of the first track's time to the second's.
   struct Extreme {
     std::uint32_t frame = 0;
     double ratio = 1;
   };
 
-  FrameValues ratios;  ///< of the frames that both have run, and in which neither was disturbed
-  std::uint64_t first_slower = 0;   ///< frames
-  std::uint64_t second_slower = 0;  ///< frames in which the second track is slower
+  FrameValues ratios;               ///< of the frames that both tracks have run undisturbed
+  std::uint64_t first_slower = 0;   ///< number of frames
+  std::uint64_t second_slower = 0;  ///< number of frames
   double median = 1;
-  std::optional<Extreme> highest;  ///< where the first one is slowest beside the second; nothing
-                                   ///< without any frame
-  std::optional<Extreme> lowest;   ///< of the fastest frame
+  std::optional<Extreme> highest;  ///< highest ratio; nothing without frames
+  std::optional<Extreme> lowest;   ///< lowest ratio
 };
 
-/// Of the total times. O(n log n) for n frames.
+/// Compares the total times. O(n log n) for n frames.
 TimeRatios ratiosOf(const TrackReport& first, const TrackReport& second);
 
 }  // namespace broadmark

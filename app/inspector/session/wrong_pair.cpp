@@ -14,7 +14,7 @@ std::vector<WrongPair> wrongPairs(const FrameDifference& difference) {
   return wrong;
 }
 
-AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b) {
+AxisRelation axisRelation(std::size_t axis, const Aabb& a, const Aabb& b) {
   // In doubles the difference of two floats never vanishes unless they are equal.
   const double gap = std::max(static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]),
                               static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]));
@@ -24,10 +24,10 @@ AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b) {
   return relation;
 }
 
-std::size_t decidingAxis(const Aabb& a, const Aabb& b) {
+std::size_t maxSeparationAxis(const Aabb& a, const Aabb& b) {
   std::size_t widest = 0;
   for (std::size_t axis = 1; axis < 3; ++axis) {
-    if (relationOn(axis, a, b).gap > relationOn(widest, a, b).gap) widest = axis;
+    if (axisRelation(axis, a, b).gap > axisRelation(widest, a, b).gap) widest = axis;
   }
   return widest;
 }
@@ -43,22 +43,22 @@ std::string absenceText(const Trail& trail) {
                     : fmt::format("absent since frame {} or earlier", since);
 }
 
-std::string unwantedText(const CollisionFilter& filter, Pair pair) {
+std::string filterText(const CollisionFilter& filter, Pair pair) {
   if (filter.wanted(pair.a, pair.b)) return "";
   const BodyGroups a = filter.groupsOf(pair.a);
   const BodyGroups b = filter.groupsOf(pair.b);
   if (!filter.matrix().collide(a.layer, b.layer)) {
     return a.layer == b.layer
-               ? fmt::format("not wanted: layer {} does not collide with itself", a.layer)
-               : fmt::format("not wanted: layers {} and {} do not collide", a.layer, b.layer);
+               ? fmt::format("filtered: layer {} does not collide with itself", a.layer)
+               : fmt::format("filtered: layers {} and {} do not collide", a.layer, b.layer);
   }
   if (a.world != b.world) {
-    return fmt::format("not wanted: one in world {}, one in world {}", a.world, b.world);
+    return fmt::format("filtered: one body in world {}, one in world {}", a.world, b.world);
   }
-  return "not wanted: they share a tag";
+  return "filtered: bodies share a tag";
 }
 
-std::optional<std::uint32_t> PairTrails::overlapBegan() const {
+std::optional<std::uint32_t> PairTrails::overlapStart() const {
   std::size_t first = size();
   while (first > 0 && overlapsAt(first - 1)) --first;
   if (first == size()) return {};

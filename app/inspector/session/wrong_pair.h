@@ -1,5 +1,5 @@
-// What is known of a wrong pair: how it is wrong, how its two boxes lie on every axis, and since
-// when they overlap.
+// Details of a wrong pair: the kind of mismatch, the relation of its boxes on each axis, and the
+// start of their overlap.
 #pragma once
 
 #include <algorithm>
@@ -19,14 +19,14 @@
 
 namespace broadmark {
 
-/// How a pair of an answer can be wrong, as in FrameDifference.
+/// A kind of wrong pair in FrameDifference.
 struct WrongKind {
   std::string_view name;
   std::vector<Pair> FrameDifference::*pairs;
   std::uint64_t FrameDifference::*count;
   Rgb Palette::*colour;
 };
-/// The last one is no mismatch.
+/// The last kind is not a mismatch.
 inline constexpr std::array<WrongKind, 4> kWrongKinds = {
     {{"missed", &FrameDifference::missed_pairs, &FrameDifference::missed_count, &Palette::missed},
      {"false", &FrameDifference::false_pairs, &FrameDifference::false_count, &Palette::false_pair},
@@ -42,7 +42,7 @@ struct WrongPair {
 /// "3-17".
 std::string pairName(Pair pair);
 
-/// All that are listed, kind by kind in the order above.
+/// Returns all pairs of a difference, in the order of kWrongKinds.
 std::vector<WrongPair> wrongPairs(const FrameDifference& difference);
 
 inline constexpr std::array kAxes = {"x", "y", "z"};
@@ -51,37 +51,36 @@ inline constexpr std::array kAxes = {"x", "y", "z"};
 struct AxisRelation {
   enum class Type { overlap, touch, gap };
   Type type = Type::gap;
-  /// The distance between the intervals; below 0: by how much they overlap.
+  /// Distance between the intervals; negative: depth of the overlap.
   double gap = 0;
 };
 inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Type::overlap, "overlap"},
                                        {AxisRelation::Type::touch, "touch"},
                                        {AxisRelation::Type::gap, "gap"}}};
-AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b);
-/// The axis that decides whether they overlap: the one with the widest gap, or, if there is none,
-/// with the least overlap.
-std::size_t decidingAxis(const Aabb& a, const Aabb& b);
+AxisRelation axisRelation(std::size_t axis, const Aabb& a, const Aabb& b);
+/// Returns the axis with the widest gap or, if the boxes overlap, with the smallest overlap.
+std::size_t maxSeparationAxis(const Aabb& a, const Aabb& b);
 
-/// Of a body that is absent at the end of its trail: "absent: vanished in frame 41".
+/// Describes a body that is absent at the end of its trail: "absent: vanished in frame 41".
 std::string absenceText(const Trail& trail);
 
-/// Why the overlap of two bodies would not count: "not wanted: layers 1 and 2 do not collide". ""
-/// if it would.
-std::string unwantedText(const CollisionFilter& filter, Pair pair);
+/// Explains why the collision filter excludes a pair: "filtered: layers 1 and 2 do not collide"; ""
+/// if it does not.
+std::string filterText(const CollisionFilter& filter, Pair pair);
 
-/// Two trail_bodies bodies, side by side; both trails span the same frames.
+/// The trails of two bodies over the same frames.
 struct PairTrails {
   const Trail& a;
   const Trail& b;
 
   [[nodiscard]] std::size_t size() const { return std::min(a.boxes.size(), b.boxes.size()); }
   [[nodiscard]] bool overlapsAt(std::size_t i) const { return overlaps(a.boxes[i], b.boxes[i]); }
-  /// The frame since which they have overlapped up to the last one without a break; nothing when
-  /// they do not overlap there.
-  [[nodiscard]] std::optional<std::uint32_t> overlapBegan() const;
+  /// First frame of the overlap that lasts up to the last frame; nothing if the boxes do not
+  /// overlap there.
+  [[nodiscard]] std::optional<std::uint32_t> overlapStart() const;
 };
 
-/// Whether a body's box differs from that of the frame before.
+/// Whether a body's box differs from the previous frame's.
 inline bool movedAt(const Trail& trail, std::size_t i) {
   return i > 0 && trail.boxes[i] != trail.boxes[i - 1];
 }

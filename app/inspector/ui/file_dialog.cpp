@@ -42,12 +42,12 @@ void FileDialog::enter(const fs::path& directory) {
     std::error_code unknown;
     Entry entry{.name = it->path().filename().string(), .is_directory = it->is_directory(unknown)};
     if (entry.name.starts_with('.')) continue;
-    const bool wanted = entry.is_directory ||
+    const bool listed = entry.is_directory ||
                         (request_.purpose != Purpose::directory &&
                          (request_.extensions.empty() ||
                           std::ranges::find(request_.extensions, it->path().extension().string()) !=
                               request_.extensions.end()));
-    if (!wanted) continue;
+    if (!listed) continue;
     if (!entry.is_directory) entry.bytes = it->file_size(unknown);
     entries_.push_back(std::move(entry));
   }
@@ -57,12 +57,12 @@ void FileDialog::enter(const fs::path& directory) {
   });
 }
 
-fs::path FileDialog::replacedBy(const fs::path& path) const {
+fs::path FileDialog::overwrittenBy(const fs::path& path) const {
   std::error_code none;
   if (fs::exists(path, none)) return path;
   for (const std::string& extension : request_.extensions) {
-    fs::path whole = path.string() + extension;
-    if (!path.has_extension() && fs::exists(whole, none)) return whole;
+    fs::path extended = path.string() + extension;
+    if (!path.has_extension() && fs::exists(extended, none)) return extended;
   }
   return {};
 }
@@ -85,10 +85,10 @@ void FileDialog::accept() {
       failure_ = fmt::format("{}: no such file", path.string());
       return;
     }
-    if (const fs::path there = replacedBy(path);
-        request_.purpose == Purpose::save && !there.empty() && !confirm_overwrite_) {
+    if (const fs::path existing = overwrittenBy(path);
+        request_.purpose == Purpose::save && !existing.empty() && !confirm_overwrite_) {
       confirm_overwrite_ = true;
-      failure_ = fmt::format("{} exists: press again to replace it", there.filename().string());
+      failure_ = fmt::format("{} exists: press again to replace it", existing.filename().string());
       return;
     }
   }
@@ -101,7 +101,7 @@ void FileDialog::drawEntries(Ui& ui) {
   ImGui::BeginChild("entries", {0, -below}, true, ImGuiWindowFlags_NavFlattened);
   if (directory_.has_relative_path() && ui.selectable("..", false)) enter(directory_.parent_path());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const Entry entry = entries_[i];  // entering a directory replaces them
+    const Entry entry = entries_[i];  // a copy: enter() replaces entries_
     const std::string label = entry.is_directory ? entry.name + "/" : entry.name;
     const bool pressed = entry.is_directory
                              ? ui.selectable(label.c_str(), false)
@@ -143,7 +143,7 @@ void FileDialog::draw(Ui& ui) {
   } else {
     ImGui::Dummy({0, ImGui::GetTextLineHeight()});
   }
-  // The key that opened the dialog does not answer it.
+  // Ignores the Enter press that opened the dialog.
   const bool returned = Ui::entered() && !in_directory && !ImGui::IsWindowAppearing();
   const bool pressed = ui.button(std::string(kVerbs.nameOf(request_.purpose)).c_str());
   if (pressed || returned) accept();

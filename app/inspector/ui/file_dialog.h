@@ -1,4 +1,4 @@
-// Choosing a file, in the window itself.
+// A file dialog inside the window.
 #pragma once
 
 #include <filesystem>
@@ -16,15 +16,15 @@ class FileDialog {
   struct Request {
     std::string title;
     Purpose purpose = Purpose::open;
-    std::vector<std::string> extensions = {};  ///< shown ones, such as ".aabbs"; empty: all
-    std::filesystem::path suggestion = {};     ///< a file, or the directory to begin in
+    std::vector<std::string> extensions = {};  ///< listed: ".aabbs"; empty: all
+    std::filesystem::path suggestion = {};     ///< initial file or directory
     std::function<void(const std::filesystem::path&)> chosen;
   };
 
-  /// Opens it.
+  /// Opens the dialog.
   void ask(Request request);
   [[nodiscard]] bool isOpen() const { return open_; }
-  /// Draws it, if open. `chosen` is called when the user has decided.
+  /// Draws the dialog if it is open, and calls `chosen` with the chosen path.
   void draw(Ui& ui);
 
  private:
@@ -37,8 +37,8 @@ class FileDialog {
   void enter(const std::filesystem::path& directory);
   void drawEntries(Ui& ui);
   void accept();
-  /// What saving under this name, to which an extension may be added, would replace; "": nothing.
-  [[nodiscard]] std::filesystem::path replacedBy(const std::filesystem::path& path) const;
+  /// Returns the file that saving to `path`, plus a missing extension, would overwrite; "": none.
+  [[nodiscard]] std::filesystem::path overwrittenBy(const std::filesystem::path& path) const;
 
   Request request_;
   bool open_ = false;

@@ -17,12 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Latin, and the dashes, arrows, dots and signs that our texts use.
+// Latin, and the dashes, arrows, dots and signs in the texts of the program.
 constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x2010, 0x2026, 0x2190, 0x2193, 0x2212,
                                0x2212, 0x2248, 0x2248, 0x2264, 0x2265, 0};
-/// Maximum fonts searched for a glyph.
+/// Maximum number of system fonts to search for glyphs.
 constexpr std::size_t kMaxTried = 40;
-constexpr std::uintmax_t kLargestFont = 64 << 20;  // bytes
+constexpr std::uintmax_t kMaxFontBytes = 64 << 20;  // bytes
 
 bool isInRanges(ImWchar letter) {
   for (std::size_t i = 0; kRanges[i] != 0; i += 2) {
@@ -31,7 +31,7 @@ bool isInRanges(ImWchar letter) {
   return false;
 }
 
-/// The lower, the sooner it is tried; below 0: not at all.
+/// Returns the rank of a font in the search, the lowest first; -1: not used.
 int rankOf(const fs::path& font) {
   const std::string extension = font.extension().string();
   if (extension != ".ttf" && extension != ".otf" && extension != ".ttc") return -1;
@@ -47,7 +47,7 @@ int rankOf(const fs::path& font) {
   return static_cast<int>(kFirst.size());
 }
 
-/// The system's fonts, as a fallback.
+/// Returns the system's fonts in the order of the search.
 std::vector<fs::path> systemFonts() {
   std::vector<fs::path> directories = {"/usr/share/fonts", "/usr/local/share/fonts"};
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
@@ -61,7 +61,8 @@ std::vector<fs::path> systemFonts() {
          it.increment(error)) {
       std::error_code unknown;
       const int rank = rankOf(it->path());
-      if (rank >= 0 && it->file_size(unknown) <= kLargestFont) found.emplace_back(rank, it->path());
+      if (rank >= 0 && it->file_size(unknown) <= kMaxFontBytes)
+        found.emplace_back(rank, it->path());
     }
   }
   std::ranges::sort(found);
@@ -86,16 +87,16 @@ void GlyphAtlas::request(std::string_view text) {
     const int length = ImTextCharFromUtf8(&letter, at, end);
     if (length <= 0) return;
     at += length;
-    const auto known = static_cast<ImWchar>(letter);
-    if (letter > IM_UNICODE_CODEPOINT_MAX || isInRanges(known)) continue;
-    dirty_ |= needed_.insert(known).second;
+    const auto glyph = static_cast<ImWchar>(letter);
+    if (letter > IM_UNICODE_CODEPOINT_MAX || isInRanges(glyph)) continue;
+    dirty_ |= requested_.insert(glyph).second;
   }
 }
 
 ImFont* GlyphAtlas::build(ImFontAtlas& atlas, float size, float large_size) const {
   atlas.Clear();
   ImFontGlyphRangesBuilder builder;
-  for (const ImWchar letter : needed_) builder.AddChar(letter);
+  for (const ImWchar letter : requested_) builder.AddChar(letter);
   ImVector<ImWchar> others;
   builder.BuildRanges(&others);
   builder.AddRanges(kRanges);
@@ -109,7 +110,7 @@ ImFont* GlyphAtlas::build(ImFontAtlas& atlas, float size, float large_size) cons
                                       pixels, &config, all.Data);
   };
   add(size);
-  std::vector<std::string> files;  // until the atlas is built
+  std::vector<std::string> files;  // outlives atlas.Build()
   files.reserve(fallbacks_.size());
   for (const fs::path& fallback : fallbacks_) {
     std::string& file = files.emplace_back(readTextFile(fallback));
@@ -127,28 +128,28 @@ ImFont* GlyphAtlas::build(ImFontAtlas& atlas, float size, float large_size) cons
 
 std::size_t GlyphAtlas::missingFrom(const ImFont& font) const {
   return static_cast<std::size_t>(std::ranges::count_if(
-      needed_, [&](ImWchar letter) { return font.FindGlyphNoFallback(letter) == nullptr; }));
+      requested_, [&](ImWchar letter) { return font.FindGlyphNoFallback(letter) == nullptr; }));
 }
 
 ImFont* GlyphAtlas::load(ImFontAtlas& atlas, float size, float large_size) {
-  const bool was_stale = std::exchange(dirty_, false);
+  const bool was_dirty = std::exchange(dirty_, false);
   ImFont* large = build(atlas, size, large_size);
-  if (missingFrom(*atlas.Fonts[0]) == missing_ || !was_stale) return large;
+  if (missingFrom(*atlas.Fonts[0]) == missing_ || !was_dirty) return large;
   missing_ = missingFrom(*atlas.Fonts[0]);
   for (const fs::path& font : systemFonts()) {
     if (missing_ == 0) break;
     if (std::ranges::find(fallbacks_, font) != fallbacks_.end()) continue;
     fallbacks_.push_back(font);
-    bool helps = false;
+    bool improves = false;
     try {
       if (build(atlas, size, large_size) != nullptr) {
-        const std::size_t left = missingFrom(*atlas.Fonts[0]);
-        helps = left < missing_;
-        missing_ = std::min(left, missing_);
+        const std::size_t missing = missingFrom(*atlas.Fonts[0]);
+        improves = missing < missing_;
+        missing_ = std::min(missing, missing_);
       }
-    } catch (const InputError&) {  // a font that cannot be read is none
+    } catch (const InputError&) {  // skips an unreadable font
     }
-    if (!helps) fallbacks_.pop_back();
+    if (!improves) fallbacks_.pop_back();
   }
   return build(atlas, size, large_size);
 }

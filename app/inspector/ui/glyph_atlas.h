@@ -1,5 +1,5 @@
-// Glyphs of the user interface: Latin from its own font, others on demand, from that font or the
-// system's. There is no shaping: scripts with joined letters look spelled out.
+// Glyphs of the user interface: Latin from the embedded font, others on demand from that font or
+// the system's. There is no text shaping: the letters of cursive scripts are not joined.
 #pragma once
 
 #include <imgui.h>
@@ -18,8 +18,8 @@ class GlyphAtlas {
   void request(std::string_view text);
   /// Whether glyphs were requested since load().
   [[nodiscard]] bool dirty() const { return dirty_; }
-  /// Puts all glyphs into the atlas, in the normal size, which becomes the default font, and in the
-  /// large size, which is returned. Sizes in pixels.
+  /// Builds the atlas with all glyphs in two fonts: the default font of this size in pixels, and
+  /// the large one, which it returns.
   ImFont* load(ImFontAtlas& atlas, float size, float large_size);
   /// Number of requested glyphs that no font has.
   [[nodiscard]] std::size_t missing() const { return missing_; }
@@ -28,7 +28,7 @@ class GlyphAtlas {
   ImFont* build(ImFontAtlas& atlas, float size, float large_size) const;
   [[nodiscard]] std::size_t missingFrom(const ImFont& font) const;
 
-  std::set<ImWchar> needed_;  ///< beyond Latin
+  std::set<ImWchar> requested_;  ///< beyond Latin
   std::vector<std::filesystem::path> fallbacks_;
   std::size_t missing_ = 0;
   bool dirty_ = false;

@@ -10,9 +10,9 @@
 namespace broadmark {
 namespace {
 
-/// Takes a value over if it is there and of the right type.
+/// Reads a field if it is present and of the right type.
 template <class Value>
-void take(const Json& json, const char* key, Value& value) {
+void readField(const Json& json, const char* key, Value& value) {
   const auto found = json.find(key);
   if (found == json.end()) return;
   try {
@@ -21,9 +21,9 @@ void take(const Json& json, const char* key, Value& value) {
   }
 }
 
-/// Calls visit() with the name and the value of each.
-template <class Of, class Visit>
-void visitAll(Of& preferences, const Visit& visit) {
+/// Calls visit() with the name and the value of each field.
+template <class Fields, class Visit>
+void visitFields(Fields& preferences, const Visit& visit) {
   visit("dark", preferences.dark);
   visit("scale", preferences.scale);
   visit("window_width", preferences.window_width);
@@ -35,18 +35,18 @@ void visitAll(Of& preferences, const Visit& visit) {
   visit("recent", preferences.recent);
 }
 
-double within(double value, double low, double high) {
-  return value >= low && value <= high ? value : low;
+double inRangeOrMin(double value, double min, double max) {
+  return value >= min && value <= max ? value : min;
 }
 
 }  // namespace
 
 void Preferences::resetLayout() {
-  const Preferences first;
-  left = first.left;
-  right = first.right;
-  bottom = first.bottom;
-  tabs = first.tabs;
+  const Preferences defaults;
+  left = defaults.left;
+  right = defaults.right;
+  bottom = defaults.bottom;
+  tabs = defaults.tabs;
 }
 
 void Preferences::remember(const std::filesystem::path& file) {
@@ -70,20 +70,20 @@ Preferences parsePreferences(std::string_view text) {
   Preferences read;
   const Json json = jsonOrNull(text);
   if (!json.is_object()) return read;
-  visitAll(read, [&](const char* name, auto& value) { take(json, name, value); });
+  visitFields(read, [&](const char* name, auto& value) { readField(json, name, value); });
   read.scale = read.scale >= 0.5 && read.scale <= 4 ? read.scale : 0;
   read.window_width = std::clamp(read.window_width, 320, 16384);
   read.window_height = std::clamp(read.window_height, 240, 16384);
-  read.left = within(read.left, 120, 4000);
-  read.right = within(read.right, 120, 4000);
-  read.bottom = within(read.bottom, 80, 4000);
+  read.left = inRangeOrMin(read.left, 120, 4000);
+  read.right = inRangeOrMin(read.right, 120, 4000);
+  read.bottom = inRangeOrMin(read.bottom, 80, 4000);
   if (read.recent.size() > Preferences::kMaxRecent) read.recent.resize(Preferences::kMaxRecent);
   return read;
 }
 
 std::string formatPreferences(const Preferences& preferences) {
   Json json;
-  visitAll(preferences, [&](const char* name, const auto& value) { json[name] = value; });
+  visitFields(preferences, [&](const char* name, const auto& value) { json[name] = value; });
   return formatJson(json, 2);
 }
 

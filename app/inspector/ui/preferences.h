@@ -1,4 +1,4 @@
-// What the inspector remembers from one start to the next.
+// Settings that the inspector saves between sessions.
 #pragma once
 
 #include <filesystem>
@@ -13,18 +13,18 @@ struct Preferences {
   static constexpr std::size_t kMaxRecent = 10;
 
   bool dark = true;
-  double scale = 0;  ///< of text and widgets; 0: as the screen suggests
+  double scale = 0;  ///< of text and widgets; 0: the scale of the screen
   int window_width = 1440;
   int window_height = 860;
   double left = 310;                        ///< width of the panels on the left, in units
   double right = 310;                       ///< width of the panels on the right
-  double bottom = 240;                      ///< height of those below
-  std::map<std::string, std::string> tabs;  ///< the panel in front, by place
-  std::vector<std::string> recent;          ///< files, the latest first
+  double bottom = 240;                      ///< height of the panels at the bottom
+  std::map<std::string, std::string> tabs;  ///< the front panel, by dock area
+  std::vector<std::string> recent;          ///< recent files, the latest first
 
-  /// Gives the panels the sizes and places that they have at first.
+  /// Restores the default sizes and front panels.
   void resetLayout();
-  /// Puts a file in front of the recent ones.
+  /// Moves a file to the front of `recent`.
   void remember(const std::filesystem::path& file);
 
   friend bool operator==(const Preferences&, const Preferences&) = default;
@@ -33,12 +33,11 @@ struct Preferences {
 /// $XDG_CONFIG_HOME/broadmark/inspector.json, or below ~/.config.
 std::filesystem::path preferencesPath();
 
-/// What cannot be understood keeps its default: bad preferences do not keep the program from
-/// starting.
+/// Invalid values get their defaults, so that a damaged file does not prevent startup.
 Preferences parsePreferences(std::string_view json);
 std::string formatPreferences(const Preferences& preferences);
 
-/// Of a file that is not there: the defaults.
+/// Returns the defaults if the file cannot be read.
 Preferences loadPreferences(const std::filesystem::path& path);
 /// Creates the directory. Throws InputError.
 void savePreferences(const std::filesystem::path& path, const Preferences& preferences);

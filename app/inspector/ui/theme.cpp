@@ -10,9 +10,9 @@
 namespace broadmark {
 namespace {
 
-/// Dear ImGui's colours from ours.
+/// The palette's source of a Dear ImGui colour.
 struct ColourUse {
-  ImGuiCol_ which;
+  ImGuiCol_ target;
   Rgb Palette::*source;
   float alpha = 1;
 };
@@ -67,7 +67,7 @@ constexpr ColourUse kColourUses[] = {
 void setColours(const Palette& palette) {
   ImVec4* colours = ImGui::GetStyle().Colors;
   for (const ColourUse& use : kColourUses) {
-    colours[use.which] = colourVector(palette.*use.source, use.alpha);
+    colours[use.target] = colourVector(palette.*use.source, use.alpha);
   }
   colours[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, 0.45F};
 }
@@ -86,22 +86,22 @@ ImU32 colour(Rgb rgb, float alpha) {
 std::vector<Rgb> curveColours(std::span<const std::string_view> families, const Palette& palette) {
   std::vector<Rgb> colours(families.size());
   std::vector<std::size_t> others;
-  std::array<bool, std::tuple_size_v<decltype(Palette::curve)>> taken{};
+  std::array<bool, std::tuple_size_v<decltype(Palette::curve)>> used{};
   for (std::size_t i = 0; i < families.size(); ++i) {
     const auto* const own = std::ranges::find(kFamilyCurves, families[i],
                                               [](const auto& entry) { return entry.first; });
-    if (own == std::end(kFamilyCurves) || taken[own->second]) {
+    if (own == std::end(kFamilyCurves) || used[own->second]) {
       others.push_back(i);
     } else {
-      taken[own->second] = true;
+      used[own->second] = true;
       colours[i] = palette.curve[own->second];
     }
   }
   for (const std::size_t i : others) {
-    if (std::ranges::count(taken, false) == 0) taken = {};  // then they repeat
-    bool* const left = std::ranges::find(taken, false);
-    *left = true;
-    colours[i] = palette.curve[static_cast<std::size_t>(left - taken.begin())];
+    if (std::ranges::count(used, false) == 0) used = {};  // all used: repeat them
+    bool* const unused = std::ranges::find(used, false);
+    *unused = true;
+    colours[i] = palette.curve[static_cast<std::size_t>(unused - used.begin())];
   }
   return colours;
 }

@@ -1,5 +1,7 @@
 #include "inspector/ui/ui.h"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
@@ -13,24 +15,23 @@
 namespace broadmark {
 namespace {
 
-/// Inputs are as wide as this share of their panel; their labels take the rest.
+/// Width of an input as a share of its panel; the label gets the rest.
 constexpr float kInputShare = 0.52F;
 constexpr float kVectorShare = 0.7F;    // of the width, for three numbers in a row
 constexpr float kTooltipDelay = 0.45F;  // seconds
 constexpr std::size_t kBins = 48;       // of a histogram
 
-/// The name in a label: of "Add##popup" it is "Add", of "##speed" "speed"; of a label that changes,
-/// "Pause###Play", what stays the same, "Play".
+/// Returns the name in a label: "Add" in "Add##popup", "speed" in "##speed" or "Pause###speed".
 std::string_view nameOf(std::string_view label) {
-  if (const std::size_t lasting = label.find("###"); lasting != label.npos) {
-    return label.substr(lasting + 3);
+  if (const std::size_t constant = label.find("###"); constant != label.npos) {
+    return label.substr(constant + 3);
   }
   const std::size_t split = label.find("##");
   if (split == 0) return label.substr(2);
   return label.substr(0, split);
 }
 
-/// Puts the tooltip of the last item beside its window, or above it where the window is wide: under
+/// Places the tooltip of the last item beside its window or, if that is wide, above the item: below
 /// the mouse it would hide the next widget.
 void placeTooltip() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -48,13 +49,13 @@ void placeTooltip() {
 
 }  // namespace
 
-std::string fittingText(std::string text, float room, ImFont* font) {
+std::string fittingText(std::string text, float max_width, ImFont* font) {
   if (font == nullptr) font = ImGui::GetFont();
-  const auto width = [&](const std::string& some) {
-    return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, some.c_str()).x;
+  const auto width = [&](const std::string& line) {
+    return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, line.c_str()).x;
   };
-  if (width(text) <= room) return text;
-  while (!text.empty() && width(text + "…") > room) {
+  if (width(text) <= max_width) return text;
+  while (!text.empty() && width(text + "…") > max_width) {
     while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8
     text.pop_back();
   }
@@ -62,16 +63,16 @@ std::string fittingText(std::string text, float room, ImFont* font) {
 }
 
 float widthOfWholeColumns(const char* table, int always) {
-  const float room = ImGui::GetContentRegionAvail().x;
-  const ImGuiTable* const before = ImGui::TableFindByID(ImGui::GetID(table));
-  if (before == nullptr) return room;
-  float whole = before->InnerWindow->ScrollbarY ? ImGui::GetStyle().ScrollbarSize : 0;
-  for (int column = 0; column < before->ColumnsCount; ++column) {
-    const float width = before->Columns[column].MaxX - before->Columns[column].MinX;
-    if (column >= always && whole + width > room) return whole;
+  const float available = ImGui::GetContentRegionAvail().x;
+  const ImGuiTable* const last = ImGui::TableFindByID(ImGui::GetID(table));
+  if (last == nullptr) return available;
+  float whole = last->InnerWindow->ScrollbarY ? ImGui::GetStyle().ScrollbarSize : 0;
+  for (int column = 0; column < last->ColumnsCount; ++column) {
+    const float width = last->Columns[column].MaxX - last->Columns[column].MinX;
+    if (column >= always && whole + width > available) return whole;
     whole += width;
   }
-  return room;
+  return available;
 }
 
 Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
@@ -89,23 +90,23 @@ bool Ui::inDialog() {
 
 void Ui::beforePicture() {
   const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
-  taken_ = (!popups.empty() && !inDialog()) || ImGui::GetIO().WantTextInput;
+  escape_consumed_ = (!popups.empty() && !inDialog()) || ImGui::GetIO().WantTextInput;
 }
 
 void Ui::begin() {
   places_.clear();
   focus_.clear();
   const bool pressed = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
-  escaped_ = pressed && !taken_;
+  escaped_ = pressed && !escape_consumed_;
   const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
-  if (pressed && taken_ && !popups.empty() && !inDialog()) {
+  if (pressed && escape_consumed_ && !popups.empty() && !inDialog()) {
     ImGui::ClosePopupToLevel(popups.Size - 1, true);
   }
 }
 
 bool Ui::entered() {
   return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
-         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
+         ImGui::IsKeyPressed(static_cast<ImGuiKey>(GLFW_KEY_KP_ENTER), false);
 }
 
 std::string Ui::fullName(std::string_view label) const {
@@ -120,7 +121,7 @@ void Ui::note(std::string_view label) {
     revealed_.clear();
   }
   if (ImGui::IsItemFocused() && !GImGui->NavDisableHighlight) focus_ = name;
-  // Of what is partly clipped away, the rest: that is what can be pressed.
+  // Only the visible part of a widget can be pressed.
   ImRect rect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   const bool visible = ImGui::IsItemVisible();
   if (visible) rect.ClipWithFull(ImGui::GetCurrentWindowRead()->ClipRect);
@@ -152,11 +153,11 @@ void Ui::tooltip(const char* text) {
   ImGui::EndTooltip();
 }
 
-void Ui::labelledWidth() const {
+void Ui::setInputWidth() const {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * kInputShare);
 }
 
-bool Ui::noted(bool acted, const char* label, const char* tip) {
+bool Ui::registered(bool acted, const char* label, const char* tip) {
   note(label);
   tooltip(tip);
   return acted;
@@ -164,7 +165,7 @@ bool Ui::noted(bool acted, const char* label, const char* tip) {
 
 bool Ui::button(const char* label, const char* tip, float width, bool enabled) {
   ImGui::BeginDisabled(!enabled);
-  const bool pressed = noted(ImGui::Button(label, {width, 0}), label, tip);
+  const bool pressed = registered(ImGui::Button(label, {width, 0}), label, tip);
   ImGui::EndDisabled();
   return pressed;
 }
@@ -184,7 +185,7 @@ bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
 
 bool Ui::checkbox(const char* label, bool& value, const char* tip, bool enabled) {
   ImGui::BeginDisabled(!enabled);
-  const bool pressed = noted(ImGui::Checkbox(label, &value), label, tip);
+  const bool pressed = registered(ImGui::Checkbox(label, &value), label, tip);
   ImGui::EndDisabled();
   return pressed;
 }
@@ -194,7 +195,7 @@ bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::st
   if (width > 0) {
     ImGui::SetNextItemWidth(width);
   } else {
-    labelledWidth();
+    setInputWidth();
   }
   const char* shown = chosen < options.size() ? options[chosen].c_str() : "";
   const bool open = ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge);
@@ -223,24 +224,24 @@ bool Ui::selectable(const char* label, bool selected, const char* tip, std::opti
   const bool pressed =
       ImGui::Selectable(label, selected, in_table ? ImGuiSelectableFlags_SpanAllColumns : 0);
   ImGui::PopStyleColor();
-  return noted(pressed, label, tip);
+  return registered(pressed, label, tip);
 }
 
 bool Ui::selectableLine(const char* label, bool selected, std::string_view right, Rgb right_colour,
                         const char* tip) {
-  const std::string shown = fittingText(label, roomBefore(right));
+  const std::string shown = fittingText(label, widthBefore(right));
   ImGui::PushID(label);
   const bool pressed = ImGui::Selectable(fmt::format("{}##row", shown).c_str(), selected,
                                          ImGuiSelectableFlags_AllowDoubleClick);
   ImGui::PopID();
   note(label);
   tooltip(tip == nullptr && shown != label ? label : tip);
-  atRightEnd(right, right_colour);
+  rightAligned(right, right_colour);
   return pressed;
 }
 
 bool Ui::text(const char* label, std::string& value, const char* hint) {
-  labelledWidth();
+  setInputWidth();
   glyphs.request(value);
   ImGui::InputTextWithHint(label, hint, &value);
   note(label);
@@ -248,7 +249,7 @@ bool Ui::text(const char* label, std::string& value, const char* hint) {
 }
 
 template <class Number>
-bool Ui::enterNumber(const char* label, std::string_view name, Number& value, Number min,
+bool Ui::inputNumber(const char* label, std::string_view name, Number& value, Number min,
                      Number max, const char* tip) {
   constexpr bool kWhole = std::is_integral_v<Number>;
   Number entered = value;
@@ -256,7 +257,7 @@ bool Ui::enterNumber(const char* label, std::string_view name, Number& value, Nu
                      nullptr, kWhole ? "%lld" : "%.6g");
   note(name);
   tooltip(tip);
-  // While it is typed the number may be out of range.
+  // A number may be out of range while it is typed.
   if (ImGui::IsItemActive()) {
     value = entered;
     return false;
@@ -267,31 +268,31 @@ bool Ui::enterNumber(const char* label, std::string_view name, Number& value, Nu
   value = entered >= min ? std::min(entered, max) : min;
   if (value != entered && on_correction) {
     on_correction(
-        fmt::format("{}: {} is not from {} to {}; {} was taken", name, entered, min, max, value));
+        fmt::format("{}: {} is out of range {} to {}; using {}", name, entered, min, max, value));
   }
   return true;
 }
 
 bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
                  const char* tip) {
-  labelledWidth();
-  return enterNumber(label, label, value, min, max, tip);
+  setInputWidth();
+  return inputNumber(label, label, value, min, max, tip);
 }
 
 bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
-  labelledWidth();
-  return enterNumber(label, label, value, min, max, tip);
+  setInputWidth();
+  return inputNumber(label, label, value, min, max, tip);
 }
 
 bool Ui::entry(const char* name, double& value, double min, double max, const char* tip) {
-  return enterNumber(fmt::format("##{}", name).c_str(), name, value, min, max, tip);
+  return inputNumber(fmt::format("##{}", name).c_str(), name, value, min, max, tip);
 }
 
 bool Ui::vector(const char* label, std::array<double, 3>& value, double min, double max,
                 const char* tip) {
   constexpr const char* kComponents[] = {"x", "y", "z"};
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x / 2;
-  // Three numbers need more room than one; they end where other inputs do not.
+  // Three numbers are wider than other inputs.
   const float width = std::floor((ImGui::GetContentRegionAvail().x * kVectorShare - 2 * gap) / 3);
   bool changed = false;
   ImGui::PushID(label);
@@ -299,7 +300,7 @@ bool Ui::vector(const char* label, std::array<double, 3>& value, double min, dou
     if (axis > 0) ImGui::SameLine(0, gap);
     ImGui::SetNextItemWidth(std::max(width, 1.0F));
     changed |=
-        enterNumber(fmt::format("##{}", kComponents[axis]).c_str(),
+        inputNumber(fmt::format("##{}", kComponents[axis]).c_str(),
                     fmt::format("{} {}", label, kComponents[axis]), value[axis], min, max, tip);
   }
   ImGui::PopID();
@@ -309,7 +310,7 @@ bool Ui::vector(const char* label, std::array<double, 3>& value, double min, dou
 }
 
 bool Ui::slider(const char* label, int& value, int min, int max) {
-  // Of whole numbers Dear ImGui makes the grab as wide as a step: of few it would look half full.
+  // SliderInt's grab is as wide as a step: with few steps it would fill half the slider.
   auto real = static_cast<float>(value);
   const bool changed =
       ImGui::SliderFloat(label, &real, static_cast<float>(min), static_cast<float>(max), "",
@@ -320,12 +321,12 @@ bool Ui::slider(const char* label, int& value, int min, int max) {
 }
 
 bool Ui::menuItem(const char* label, const char* shortcut, bool selected, bool enabled) {
-  return noted(ImGui::MenuItem(label, shortcut, selected, enabled), label);
+  return registered(ImGui::MenuItem(label, shortcut, selected, enabled), label);
 }
 
 bool Ui::beginMenu(const char* label, bool enabled) {
   const bool open = ImGui::BeginMenu(label, enabled);
-  // Inside the menu the last item is not its title any more.
+  // Inside the menu, the last item is not its title.
   if (!open) note(label);
   return open;
 }
@@ -340,9 +341,9 @@ bool Ui::parameter(const Parameter& parameter) {
     const std::string_view unit = parameterUnit(parameter);
     if (unit.empty()) return changed;
     ImGui::SameLine();
-    // Where there is no room for it the tooltip says it.
-    const ImVec2 wanted = ImGui::CalcTextSize(unit.data(), unit.data() + unit.size());
-    if (ImGui::GetContentRegionAvail().x >= wanted.x) {
+    // Without room for the unit, only the tooltip shows it.
+    const ImVec2 extent = ImGui::CalcTextSize(unit.data(), unit.data() + unit.size());
+    if (ImGui::GetContentRegionAvail().x >= extent.x) {
       faint(unit);
     } else {
       ImGui::NewLine();
@@ -384,9 +385,9 @@ void Ui::placeInMiddle(ImVec2 size) const {
       {std::min(size.x * scale, screen.x - margin), std::min(size.y * scale, screen.y - margin)});
 }
 
-bool Ui::beginDialog(const char* title, ImVec2 size, bool* keep) {
+bool Ui::beginDialog(const char* title, ImVec2 size, bool* open) {
   placeInMiddle(size);
-  return ImGui::BeginPopupModal(title, keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+  return ImGui::BeginPopupModal(title, open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
 }
 
 std::optional<std::size_t> Ui::ask(
@@ -397,17 +398,17 @@ std::optional<std::size_t> Ui::ask(
   paragraph(text);
   ImGui::Spacing();
   const float width = 84 * scale;
-  std::optional<std::size_t> given;
-  std::size_t number = 0;
+  std::optional<std::size_t> pressed;
+  std::size_t index = 0;
   for (const auto& [answer, tip] : answers) {
-    if (button(answer, tip, width)) given = number;
+    if (button(answer, tip, width)) pressed = index;
     ImGui::SameLine();
-    ++number;
+    ++index;
   }
-  if (cancel(width)) given = number;
-  if (given) ImGui::CloseCurrentPopup();
+  if (cancel(width)) pressed = index;
+  if (pressed) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
-  return given;
+  return pressed;
 }
 
 bool Ui::cancel(float width) {
@@ -415,30 +416,30 @@ bool Ui::cancel(float width) {
   return pressed || escaped();
 }
 
-void Ui::besideIfRoom(float width) {
+void Ui::sameLineIfFits(float width) {
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) {
     ImGui::SameLine();
   }
 }
 
-float Ui::roomBefore(std::string_view right) {
+float Ui::widthBefore(std::string_view right) {
   return ImGui::GetContentRegionAvail().x -
          ImGui::CalcTextSize(right.data(), right.data() + right.size()).x -
          ImGui::GetStyle().ItemSpacing.x;
 }
 
-void Ui::atRightEnd(std::string_view words, Rgb rgb) {
+void Ui::rightAligned(std::string_view words, Rgb rgb) {
   ImGui::SameLine(ImGui::GetContentRegionMax().x -
                   ImGui::CalcTextSize(words.data(), words.data() + words.size()).x);
   coloured(rgb, words);
 }
 
 void Ui::line(std::string_view left, std::string_view right, Rgb right_colour) {
-  const std::string shown = fittingText(std::string(left), roomBefore(right));
+  const std::string shown = fittingText(std::string(left), widthBefore(right));
   plain(shown);
   if (shown != left) tooltip(std::string(left).c_str());
-  atRightEnd(right, right_colour);
+  rightAligned(right, right_colour);
 }
 
 bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, int always,
@@ -463,7 +464,7 @@ void Ui::cell(std::string_view words, Rgb rgb) {
   coloured(rgb, words);
 }
 
-void Ui::fact(const char* name, std::string_view value) {
+void Ui::valueRow(const char* name, std::string_view value) {
   faint(name);
   ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
   plain(value);
@@ -500,16 +501,16 @@ void drawHistogram(Ui& ui, std::span<const double> values,
   const Histogram histogram = histogramOf(values, kBins);
   if (histogram.counts.empty()) return;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const float letters = ImGui::GetTextLineHeight();
+  const float line_height = ImGui::GetTextLineHeight();
   const ImVec2 size = {ImGui::GetContentRegionAvail().x,
-                       std::max(ImGui::GetContentRegionAvail().y - letters, letters)};
+                       std::max(ImGui::GetContentRegionAvail().y - line_height, line_height)};
   const float bottom = corner.y + size.y;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const auto most = static_cast<float>(*std::ranges::max_element(histogram.counts));
+  const auto max_count = static_cast<float>(*std::ranges::max_element(histogram.counts));
   const float width = size.x / static_cast<float>(kBins);
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const float left = corner.x + width * static_cast<float>(bin);
-    const float height = size.y * static_cast<float>(histogram.counts[bin]) / most;
+    const float height = size.y * static_cast<float>(histogram.counts[bin]) / max_count;
     draw.AddRectFilled({left, bottom - height}, {left + width - 1, bottom},
                        colour(ui.theme.accent));
   }
@@ -526,8 +527,7 @@ void drawHistogram(Ui& ui, std::span<const double> values,
     return extent;
   };
   const float ends = label(histogram.low, 0) + label(histogram.high, 1);
-  const bool room = size.x > 2 * ends;
-  if (room) label((histogram.low + histogram.high) / 2, 0.5F);
+  if (size.x > 2 * ends) label((histogram.low + histogram.high) / 2, 0.5F);
   ImGui::Dummy(size);
   ui.note("histogram");
 }
@@ -541,20 +541,20 @@ void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flag
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
 }
 
-bool SplitPane::both() const { return ImGui::GetContentRegionAvail().x >= narrowest; }
+bool SplitPane::both() const { return ImGui::GetContentRegionAvail().x >= min_width; }
 
 void SplitPane::draw(const std::function<void()>& first,
                      const std::function<void()>& second) const {
   const bool both = this->both();
   const float width = ImGui::GetContentRegionAvail().x;
-  const auto part = [](const char* id, float extent, const std::function<void()>& draw_it) {
+  const auto part = [](const char* id, float extent, const std::function<void()>& draw_part) {
     ImGui::BeginChild(id, {extent, 0}, false, ImGuiWindowFlags_NavFlattened);
-    draw_it();
+    draw_part();
     ImGui::EndChild();
   };
-  if (both || !second_alone) part("first", both ? share * width : 0, first);
+  if (both || !second_only) part("first", both ? share * width : 0, first);
   if (both) ImGui::SameLine();
-  if (both || second_alone) part("second", 0, second);
+  if (both || second_only) part("second", 0, second);
 }
 
 }  // namespace broadmark

@@ -1,5 +1,4 @@
-// Widgets, by name: Dear ImGui's, each noted with its place, so that scripts and tests find them;
-// and the look of all of them.
+// Named Dear ImGui widgets, registered with their rectangles for scripts and tests; and the theme.
 #pragma once
 
 #include <imgui.h>
@@ -22,7 +21,7 @@
 
 namespace broadmark {
 
-/// Where a widget was in the last picture.
+/// Rectangle and state of a widget in the last picture.
 struct WidgetPlace {
   ImVec2 min;
   ImVec2 max;
@@ -33,11 +32,11 @@ struct WidgetPlace {
 ImVec4 colourVector(Rgb rgb, float alpha = 1);
 ImU32 colour(Rgb rgb, float alpha = 1);
 
-/// The widgets of one picture. A widget's name is its label, after the names of the scopes around
-/// it: "Scene/objects". Every method that is called as a Dear ImGui widget behaves like it.
+/// The widgets of a picture. A widget's name is its label, prefixed by the enclosing scopes:
+/// "Scene/objects". Methods named after a Dear ImGui widget behave like it.
 class Ui {
  public:
-  /// Until destroyed, names are in this scope. (Dear ImGui does not see it.)
+  /// Prefixes widget names during its lifetime. (Does not affect Dear ImGui's ids.)
   class Scope {
    public:
     Scope(Ui& ui, std::string_view name);
@@ -51,17 +50,16 @@ class Ui {
   };
   [[nodiscard]] Scope scope(std::string_view name) { return {*this, name}; }
 
-  /// To be called before and after a picture is begun: forgets the places of the last one.
+  /// Called before and after ImGui::NewFrame(); begin() clears the widgets of the last picture.
   void beforePicture();
   void begin();
-  /// Whether Escape was pressed, for what is in front: a list that is open or text that is being
-  /// typed takes it first.
+  /// Whether Escape was pressed, and not consumed by an open list or a text input.
   [[nodiscard]] bool escaped() const { return escaped_; }
-  /// Whether a dialog is in front.
+  /// Whether the topmost popup is a dialog.
   [[nodiscard]] static bool inDialog();
-  /// The widget that keys have moved to; "": none.
+  /// Name of the widget highlighted by keyboard navigation; "": none.
   [[nodiscard]] const std::string& focused() const { return focus_; }
-  /// Whether Enter was pressed outside a text input.
+  /// Whether Enter was pressed, on the keypad or not.
   [[nodiscard]] static bool entered();
 
   bool button(const char* label, const char* tooltip = nullptr, float width = 0,
@@ -69,67 +67,65 @@ class Ui {
   /// A button that stays pressed while `on`.
   bool toggle(const char* label, bool& on, const char* tooltip = nullptr, float width = 0);
   bool checkbox(const char* label, bool& value, const char* tooltip = nullptr, bool enabled = true);
-  /// Chooses one of `options`; returns whether it changed.
+  /// Returns whether the choice changed.
   bool combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
              const char* tooltip = nullptr, float width = 0);
-  /// In a table it is as wide as the row.
+  /// Spans all columns of a table.
   bool selectable(const char* label, bool selected, const char* tooltip = nullptr,
                   std::optional<Rgb> rgb = {});
-  /// The same with words at the right end of its line; what does not fit of the label is cut.
+  /// A selectable with right-aligned text; a label that does not fit is truncated.
   bool selectableLine(const char* label, bool selected, std::string_view right, Rgb right_colour,
                       const char* tooltip = nullptr);
   bool text(const char* label, std::string& value, const char* hint = "");
-  /// Numbers count when they are entered (Enter, Tab, or a click elsewhere), within their range.
+  /// Numbers are committed by Enter, Tab or a click elsewhere, and clamped to their range.
   bool integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
                const char* tooltip = nullptr);
   bool number(const char* label, double& value, double min, double max,
               const char* tooltip = nullptr);
-  /// The same without a label beside it, as wide as has been set.
+  /// A number without a label, with the width of ImGui::SetNextItemWidth().
   bool entry(const char* name, double& value, double min, double max, const char* tooltip);
-  /// Three numbers side by side, called "LABEL x", "LABEL y" and "LABEL z".
+  /// Three numbers side by side, named "LABEL x", "LABEL y" and "LABEL z".
   bool vector(const char* label, std::array<double, 3>& value, double min, double max,
               const char* tooltip = nullptr);
-  /// Without the number, which the grab would cover: that belongs into the label.
+  /// Shows no number, which the grab would cover: put it into the label.
   bool slider(const char* label, int& value, int min, int max);
   bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
                 bool enabled = true);
   bool beginMenu(const char* label, bool enabled = true);
-  /// The widget that suits a parameter, its explanation as a tooltip.
+  /// Draws the widget for the type of a parameter, with a tooltip.
   bool parameter(const Parameter& parameter);
-  /// All parameters of an object. Returns whether one changed.
+  /// Draws all parameters of an object. Returns whether one changed.
   bool parameters(Parametrised& object);
 
-  /// Puts the next window in the middle of the screen, of this size (in units; 0: what its contents
-  /// need) or as large as the screen allows.
+  /// Centres the next window, with this size in units (0: fits its contents) or the screen's.
   void placeInMiddle(ImVec2 size) const;
-  /// A dialog, placed like a window; its popup must be open. Its cross sets `keep` to false.
-  /// Returns whether it is drawn: then ImGui::EndPopup() follows.
-  bool beginDialog(const char* title, ImVec2 size, bool* keep = nullptr);
-  /// A dialog that asks, with a button for each answer and its tooltip, and "Cancel". Returns the
-  /// number of the answer once it is given; Cancel is the last.
+  /// Begins a centred dialog, if its popup is open. Its close button sets `open` to false. If it
+  /// returns true, call ImGui::EndPopup().
+  bool beginDialog(const char* title, ImVec2 size, bool* open = nullptr);
+  /// Draws a dialog with a button and a tooltip for each answer, and with "Cancel" as the last.
+  /// Returns the index of the answer once a button is pressed.
   std::optional<std::size_t> ask(
       const char* title, std::string_view text,
       std::initializer_list<std::pair<const char*, const char*>> answers);
-  /// A dialog's button "Cancel", which Escape presses, too.
+  /// The "Cancel" button of a dialog, which Escape presses as well.
   bool cancel(float width = 0);
 
-  /// Puts what is `width` wide beside the last item, or, without room for it, into the next line.
-  static void besideIfRoom(float width);
-  /// Words on the left, which are cut if need be, and on the right end of the line others.
+  /// Calls ImGui::SameLine() if the next item, of this width, fits on the line.
+  static void sameLineIfFits(float width);
+  /// Draws left-aligned text, truncated if necessary, and right-aligned text on a line.
   void line(std::string_view left, std::string_view right, Rgb right_colour);
-  /// What remains of the line once there is room on its right for these words.
-  [[nodiscard]] static float roomBefore(std::string_view right);
-  /// Writes at the right end of the line that an item has begun.
-  void atRightEnd(std::string_view words, Rgb rgb);
-  /// Begins a table below a row of its columns' names, no wider than widthOfWholeColumns(). Returns
-  /// whether it is drawn: then ImGui::EndTable() follows.
+  /// Width that remains on the line to the left of right-aligned text.
+  [[nodiscard]] static float widthBefore(std::string_view right);
+  /// Draws right-aligned text on the line of the last item.
+  void rightAligned(std::string_view text, Rgb rgb);
+  /// Begins a table with a header row. If it returns true, call ImGui::EndTable().
   static bool beginTable(const char* name, const std::vector<std::string>& columns, int always,
                          float height = 0);
-  /// The next cell of a table.
+  /// Draws text in the next cell of a table.
   void cell(std::string_view text);
   void cell(std::string_view text, Rgb rgb);
-  /// A table row "name: value" in two columns.
-  void fact(const char* name, std::string_view value);
+  /// Draws a name and a value in two columns.
+  void valueRow(const char* name, std::string_view value);
   void plain(std::string_view text);
   void faint(std::string_view text);
   void coloured(Rgb rgb, std::string_view text);
@@ -140,69 +136,66 @@ class Ui {
   void faintParagraph(std::string_view text) { paragraph(text, theme.faint); }
   void tooltip(const char* text);
 
-  /// Notes the item drawn last under a name of its own.
+  /// Registers the last item under this name.
   void note(std::string_view name);
-  /// Notes a place that is not an item's.
+  /// Registers a rectangle that is not an item.
   void noteAt(std::string_view name, ImVec2 min, ImVec2 max);
-  /// The place of a widget in the last picture, until the next one; or null.
+  /// Returns a widget of the last picture, valid until the next one; or null.
   [[nodiscard]] const WidgetPlace* find(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, WidgetPlace>& places() const { return places_; }
   /// Scrolls to this widget when it is drawn next.
   void reveal(std::string name) { revealed_ = std::move(name); }
 
-  /// Called when a number that was entered is not taken as it is, with why.
+  /// Called with a message when an entered number is clamped.
   std::function<void(const std::string&)> on_correction;
 
-  GlyphAtlas glyphs;  ///< of all texts that pass through here
+  GlyphAtlas glyphs;  ///< of all drawn texts
   Palette theme = kDarkPalette;
   float scale = 1;          ///< pixels per unit
-  ImFont* large = nullptr;  ///< for what is to be seen first
+  ImFont* large = nullptr;  ///< for prominent text
 
  private:
   [[nodiscard]] std::string fullName(std::string_view label) const;
-  /// Notes the item drawn last with its tooltip. Returns `acted`.
-  bool noted(bool acted, const char* label, const char* tooltip = nullptr);
-  /// An input for a number, noted as `name`, as wide as has been set.
+  /// Registers the last item and draws its tooltip. Returns `acted`.
+  bool registered(bool acted, const char* label, const char* tooltip = nullptr);
+  /// An input for a number, registered as `name`, with the width of ImGui::SetNextItemWidth().
   template <class Number>
-  bool enterNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
+  bool inputNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
                    const char* tooltip);
-  /// Sets the width of an input with its label on the right.
-  void labelledWidth() const;
+  /// Sets the width of the next input, with room for its label on the right.
+  void setInputWidth() const;
 
   std::string scope_;
   std::map<std::string, WidgetPlace> places_;
   std::string revealed_;
   std::string focus_;
-  bool taken_ = false;  ///< Escape, by what is open before the picture
+  bool escape_consumed_ = false;  ///< by a list or a text input open before the picture
   bool escaped_ = false;
 };
 
-/// The text; of one that is wider than `room` as much of its beginning as fits, and "…". `font`:
-/// the present one if null.
-std::string fittingText(std::string text, float room, ImFont* font = nullptr);
+/// Returns the text, truncated with "…" if wider than `max_width`. `font` null: the current font.
+std::string fittingText(std::string text, float max_width, ImFont* font = nullptr);
 
-/// How wide a table may be here so that of its columns, as they were in the last picture, each one
-/// in sight is seen wholly: half a number would be a wrong one. The first `always` are shown
-/// anyhow.
+/// Returns the width at which a table, laid out as in the last picture, shows no partial column: a
+/// truncated number would be a wrong one. The first `always` columns are always shown.
 float widthOfWholeColumns(const char* table, int always);
 
-/// Fills what is left of the window with the histogram of the values, without their tails, and
-/// writes a few of them below, as `text` has them. `line`: a value that is marked. Without values,
-/// or where all are the same, it draws nothing.
+/// Fills the rest of the window with the histogram of the values, without their tails, and labels
+/// its axis by `text`. `line`: a value to mark. Draws nothing without distinct values.
 void drawHistogram(Ui& ui, std::span<const double> values,
                    const std::function<std::string(double)>& text, std::optional<double> line = {});
 
-/// A panel of two parts: beside each other, or, where there is no room for that, one of them.
+/// Two parts of a panel side by side, or only one of them in a narrow panel.
 struct SplitPane {
-  float share = 0.5F;         ///< of the width: the first one's
-  float narrowest = 0;        ///< pixels that both need
-  bool second_alone = false;  ///< which of them, where there is room for one only
+  float share = 0.5F;        ///< of the width, for the first part
+  float min_width = 0;       ///< pixels, for both parts
+  bool second_only = false;  ///< which part a narrower panel shows
 
   [[nodiscard]] bool both() const;
   void draw(const std::function<void()>& first, const std::function<void()>& second) const;
 };
 
-/// Draws those of `count` rows that are in sight.
+/// Draws the visible rows of `count`.
 template <class Row>
 void clipped(std::size_t count, const Row& row) {
   ImGuiListClipper clipper;
@@ -216,15 +209,15 @@ void clipped(std::size_t count, const Row& row) {
   }
 }
 
-inline constexpr float kSplitterSize = 5;  ///< units: between two parts of the window
-/// Opens a window that fills a rectangle.
+inline constexpr float kSplitterSize = 5;  ///< units
+/// Begins a window with this rectangle.
 void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags = 0);
 
-/// The colours of curves in one plot, by the families of their algorithms: the first of a family
-/// has its own, the others have those that are left.
+/// Returns the colours of a plot's curves, by the families of their algorithms: the first curve of
+/// a family gets the family's colour, the others get unused ones.
 std::vector<Rgb> curveColours(std::span<const std::string_view> families, const Palette& palette);
 
-/// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
+/// Sets colours and sizes of the current Dear ImGui context, and `ui`'s theme and scale.
 void applyTheme(Ui& ui, bool dark, float scale);
 
 }  // namespace broadmark

@@ -18,13 +18,13 @@ namespace {
 constexpr float kFlightSeconds = 0.45F;
 constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
 constexpr float kZoomPerTurn = 0.86F;
-constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
+constexpr float kFlySpeed = 1.2F;   // distances to the target per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
-constexpr float kSurroundings = 3;  // focused bodies are framed with this multiple of their size
+constexpr float kSurroundings = 3;  // size of the framed area, in sizes of the focused bodies
 
-/// Whole groups, unless Alt is down.
+/// Adds the groups of the bodies, unless Alt is down.
 BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
-  return ImGui::GetIO().KeyAlt ? bodies : session.selection.whole(std::move(bodies));
+  return ImGui::GetIO().KeyAlt ? bodies : session.selection.withGroups(std::move(bodies));
 }
 
 }  // namespace
@@ -41,54 +41,54 @@ std::span<const FlyKey> flyKeys() {
 
 double View::aspect() const { return static_cast<double>(size_.x) / static_cast<double>(size_.y); }
 
-void View::lookFrom(Direction direction) { fly(lookedFrom(camera_, direction)); }
+void View::viewFrom(Direction direction) { flyTo(viewedFrom(camera_, direction)); }
 
-void View::lookAtAll() {
+void View::showWholeScene() {
   if (!content_.snapshot()) return;
   const Aabb all = shownBox(content_.snapshot()->scene.world, *content_.snapshot()->boxes);
   OrbitCamera whole = focusedOn(camera_, space_.toView(all), aspect());
   whole.cut = OrbitCamera::kUncut;
-  fly(whole);
+  flyTo(whole);
 }
 
-void View::fly(const OrbitCamera& to) { flight_ = Flight{.from = camera_, .to = to}; }
+void View::flyTo(const OrbitCamera& to) { flight_ = Flight{.from = camera_, .to = to}; }
 
-void View::moveOn(float seconds) {
+void View::advanceFlight(float seconds) {
   if (!flight_) return;
-  flight_->part += seconds / kFlightSeconds;
-  camera_ = between(flight_->from, flight_->to, std::min(flight_->part, 1.0F));
-  if (flight_->part >= 1) flight_.reset();
+  flight_->progress += seconds / kFlightSeconds;
+  camera_ = between(flight_->from, flight_->to, std::min(flight_->progress, 1.0F));
+  if (flight_->progress >= 1) flight_.reset();
 }
 
-void View::takeFlightRequest(Session& session) {
+void View::startRequestedFlight(Session& session) {
   if (!session.selection.fly_to) return;
   std::vector<std::uint32_t> bodies = *std::exchange(session.selection.fly_to, {});
   std::erase_if(bodies,
                 [&](std::uint32_t body) { return body >= content_.snapshot()->boxes->size(); });
   if (bodies.empty()) {
-    lookAtAll();
+    showWholeScene();
     return;
   }
   const Aabb bounds = content_.boundsOf(bodies);
-  if (isEmpty(bounds)) return;  // all of them are absent
+  if (isEmpty(bounds)) return;  // all bodies are absent
   const float margin = (kSurroundings - 1) * static_cast<float>(longestEdge(bounds)) / 2;
   const Aabb surroundings = space_.toView(enlarged(bounds, margin));
-  // What stands before them would hide them.
-  fly(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
+  // Cuts away the bodies that would hide them.
+  flyTo(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
 }
 
 void View::placeCamera(const Snapshot& snapshot) {
-  const auto seen = std::exchange(source_, snapshot.source);
-  const bool new_scene =
-      !seen || (seen != source_ && (seen->scene == 0 || seen->scene != source_->scene));
+  const auto previous = std::exchange(source_, snapshot.source);
+  const bool new_scene = !previous || (previous != source_ &&
+                                       (previous->scene == 0 || previous->scene != source_->scene));
   if (!new_scene) return;
   const Aabb all = shownBox(snapshot.scene.world, *snapshot.boxes);
   space_ = viewSpaceOf(all);
-  camera_ = focusedOn(lookedFrom({}, Direction::figure), space_.toView(all), aspect());
+  camera_ = focusedOn(viewedFrom({}, Direction::figure), space_.toView(all), aspect());
   flight_.reset();
 }
 
-void View::follow(const View& leader) {
+void View::copyCamera(const View& leader) {
   camera_ = leader.camera_;
   space_ = leader.space_;
   flight_.reset();
@@ -97,11 +97,11 @@ void View::follow(const View& leader) {
 void View::drawEmpty(Ui& ui, const std::string& hint) {
   ImGui::InvisibleButton("scene", size_);
   ui.note("scene");
-  const std::string shown = fittingText(hint, size_.x);
-  const ImVec2 text = ImGui::CalcTextSize(shown.c_str());
+  const std::string text = fittingText(hint, size_.x);
+  const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
   ImGui::GetWindowDrawList()->AddText(
-      {corner_.x + (size_.x - text.x) / 2, corner_.y + (size_.y - text.y) / 2},
-      colour(ui.theme.faint), shown.c_str());
+      {corner_.x + (size_.x - extent.x) / 2, corner_.y + (size_.y - extent.y) / 2},
+      colour(ui.theme.faint), text.c_str());
 }
 
 void View::drawScene(const Ui& ui) {
@@ -114,87 +114,88 @@ void View::drawScene(const Ui& ui) {
                                        {corner_.x + size_.x, corner_.y + size_.y}, {0, 1}, {1, 0});
 }
 
-void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Shown& shown) {
-  const auto scope = ui.scope(shown.name);
+void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Input& input) {
+  const auto scope = ui.scope(input.name);
   const ImGuiIO& io = ImGui::GetIO();
-  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 available = ImGui::GetContentRegionAvail();
   corner_ = ImGui::GetCursorScreenPos();
-  size_ = {std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
+  size_ = {std::max(std::floor(available.x), 1.0F), std::max(std::floor(available.y), 1.0F)};
   mouse_ = {io.MousePos.x - corner_.x, io.MousePos.y - corner_.y};
-  moved_ = false;
-  if (!shown.snapshot) return drawEmpty(ui, shown.hint);
-  if (content_.update(shown.snapshot, progress.comparison, session, ui.theme.dark)) {
-    placeCamera(*shown.snapshot);
-    answer_ = answerText(*shown.snapshot, progress.tracks, shown.track, content_.selection());
+  camera_moved_ = false;
+  if (!input.snapshot) return drawEmpty(ui, input.hint);
+  if (content_.update(input.snapshot, progress.comparison, session, ui.theme.dark)) {
+    placeCamera(*input.snapshot);
+    answer_ = answerText(*input.snapshot, progress.tracks, input.track, content_.selection());
   }
-  if (shown.leader != nullptr) {
-    follow(*shown.leader);
+  if (input.leader != nullptr) {
+    copyCamera(*input.leader);
   } else {
-    takeFlightRequest(session);
+    startRequestedFlight(session);
   }
   const OrbitCamera before = camera_;
-  moveOn(io.DeltaTime);
+  advanceFlight(io.DeltaTime);
   drawScene(ui);
   ImGui::SetCursorScreenPos(corner_);
   ImGui::InvisibleButton("scene", size_,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   ui.note("scene");
-  ViewportManipulator::Seen seen{.session = session,
-                                 .snapshot = content_.snapshot(),
-                                 .visible = content_.picture.visible,
-                                 .sight = ViewProjection(space_, scene_.viewpoint()),
-                                 .scale = ui.scale,
-                                 .mouse = {},
-                                 .ctrl = io.KeyCtrl};
+  ViewportManipulator::Input mouse_input{.session = session,
+                                         .snapshot = content_.snapshot(),
+                                         .visible = content_.picture.visible,
+                                         .projection = ViewProjection(space_, scene_.viewpoint()),
+                                         .scale = ui.scale,
+                                         .mouse = {},
+                                         .ctrl = io.KeyCtrl};
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
-    seen.mouse = Pixel{mouse_.x, mouse_.y};
+    mouse_input.mouse = Pixel{mouse_.x, mouse_.y};
   }
-  if (shown.has_hands) hands_.look(seen);
-  handleMouse(ui, seen);
-  if (shown.has_hands) hands_.draw(ui, seen, corner_);
-  moved_ = camera_ != before;
-  const std::string source = sourceText(shown.snapshot->source.get());
-  answer_.where = session.second ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
-  const ImVec2 taken = drawAnswer(ui, answer_, corner_, size_);
-  const bool tools = shown.has_hands && session.document.shown();
-  const float free = tools ? drawTools(ui, session, corner_, size_) : size_.y;
-  drawLegend(ui, content_, answer_.owner, corner_, {size_.x, free}, taken);
+  if (input.editable) manipulator_.update(mouse_input);
+  handleMouse(ui, mouse_input);
+  if (input.editable) manipulator_.draw(ui, mouse_input, corner_);
+  camera_moved_ = camera_ != before;
+  const std::string source = sourceText(input.snapshot->source.get());
+  answer_.where = session.second ? fmt::format("frame {}, {}", input.snapshot->frame, source) : "";
+  const ImVec2 answer_end = drawAnswer(ui, answer_, corner_, size_);
+  const bool tools = input.editable && session.document.shown();
+  const float free_height = tools ? drawTools(ui, session, corner_, size_) : size_.y;
+  drawLegend(ui, content_, answer_.owner, corner_, {size_.x, free_height}, answer_end);
   if (session.display.axes) drawAxisNames(ui.scale);
 }
 
-void View::beginDrag(const ViewportManipulator::Seen& seen) {
+void View::beginDrag(const ViewportManipulator::Input& input) {
   const ImGuiIO& io = ImGui::GetIO();
   drag_from_ = mouse_;
   dragged_ = false;
-  drag_ = !io.MouseDown[0]     ? Drag::pan
-          : io.KeyShift        ? Drag::rectangle
-          : hands_.press(seen) ? Drag::hands
-                               : Drag::orbit;
+  drag_ = !io.MouseDown[0]            ? Drag::pan
+          : io.KeyShift               ? Drag::rectangle
+          : manipulator_.press(input) ? Drag::manipulate
+                                      : Drag::orbit;
   flight_.reset();
 }
 
-void View::handleRelease(const ViewportManipulator::Seen& seen) {
+void View::handleRelease(const ViewportManipulator::Input& input) {
   const Drag drag = std::exchange(drag_, Drag::none);
-  if (drag == Drag::hands && !hands_.busy()) return;  // given up
-  if (hands_.busy() && (dragged_ || hands_.painting())) {
-    hands_.release(seen);
+  if (drag == Drag::manipulate && !manipulator_.busy()) return;  // cancelled
+  // A click paints, but drags nothing.
+  if (manipulator_.busy() && (dragged_ || manipulator_.painting())) {
+    manipulator_.release(input);
   } else if (drag == Drag::rectangle && dragged_) {
-    selectWithin(seen.session);
+    selectWithin(input.session);
   } else if (!dragged_ && drag != Drag::pan) {
-    hands_.cancel();
-    click(seen.session, ImGui::GetIO().MouseDoubleClicked[0]);
+    manipulator_.cancel();
+    click(input.session, ImGui::GetIO().MouseDoubleClicked[0]);
   }
 }
 
-void View::handleMouse(Ui& ui, const ViewportManipulator::Seen& seen) {
+void View::handleMouse(Ui& ui, const ViewportManipulator::Input& input) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemActivated()) beginDrag(seen);
+  if (ImGui::IsItemActivated()) beginDrag(input);
   if (ImGui::IsItemActive()) handleDrag();
-  if (ImGui::IsItemDeactivated()) handleRelease(seen);
-  // While a body is in hand, the camera stays where it is.
-  if (!ImGui::IsItemHovered() || hands_.busy()) return;
-  if (ImGui::IsMouseDoubleClicked(0)) click(seen.session, true);
+  if (ImGui::IsItemDeactivated()) handleRelease(input);
+  // The camera does not move while a body is dragged.
+  if (!ImGui::IsItemHovered() || manipulator_.busy()) return;
+  if (ImGui::IsMouseDoubleClicked(0)) click(input.session, true);
   if (io.MouseWheel != 0) {
     flight_.reset();
     const float x = 2 * mouse_.x / size_.x - 1;
@@ -211,9 +212,9 @@ void View::handleMouse(Ui& ui, const ViewportManipulator::Seen& seen) {
 }
 
 void View::handleDrag() {
-  const ImVec2 all{mouse_.x - drag_from_.x, mouse_.y - drag_from_.y};
-  if (!dragged_ && std::hypot(all.x, all.y) <= kClickPixels) return;
-  const ImVec2 moved = dragged_ ? ImGui::GetIO().MouseDelta : all;
+  const ImVec2 total{mouse_.x - drag_from_.x, mouse_.y - drag_from_.y};
+  if (!dragged_ && std::hypot(total.x, total.y) <= kClickPixels) return;
+  const ImVec2 moved = dragged_ ? ImGui::GetIO().MouseDelta : total;
   dragged_ = true;
   if (drag_ == Drag::orbit) {
     camera_ = orbited(camera_, -moved.x / size_.y * kRadiansPerHeight,
@@ -225,16 +226,16 @@ void View::handleDrag() {
 
 void View::handleKeys() {
   const float step = kFlySpeed * ImGui::GetIO().DeltaTime;
-  std::array<float, 3> way{};
+  std::array<float, 3> motion{};
   bool any = false;
-  for (const FlyKey& fly : flyKeys()) {
-    if (!ImGui::IsKeyDown(fly.key)) continue;
+  for (const FlyKey& key : flyKeys()) {
+    if (!ImGui::IsKeyDown(static_cast<ImGuiKey>(key.key))) continue;
     any = true;
-    for (std::size_t i = 0; i < way.size(); ++i) way[i] += step * fly.direction[i];
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i] += step * key.direction[i];
   }
   if (!any) return;
   flight_.reset();
-  camera_ = flown(camera_, way[0], way[1], way[2]);
+  camera_ = flown(camera_, motion[0], motion[1], motion[2]);
 }
 
 void View::click(Session& session, bool fly_there) {
@@ -272,34 +273,34 @@ void View::drawAxisNames(float scale) const {
 
 void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position,
                  ImVec2 size) {
-  std::vector<View::Shown> shown = {{.name = "View",
-                                     .snapshot = progress.snapshot,
-                                     .hint = "Simulate a scene, or drop a recording here",
-                                     .track = session.tracks.shown(),
-                                     .has_hands = true}};
+  std::vector<View::Input> inputs = {{.name = "View",
+                                      .snapshot = progress.snapshot,
+                                      .hint = "Simulate a scene, or drop a recording here",
+                                      .track = session.tracks.shown(),
+                                      .editable = true}};
   if (session.second) {
     const std::string& failure = progress.second_failure;
-    shown.push_back({.name = "Second view",
-                     .snapshot = progress.second,
-                     .hint = failure.empty() ? "Nothing is shown yet" : failure,
-                     .track = session.second->track,
-                     .leader = session.cameras_linked ? &first() : nullptr});
+    inputs.push_back({.name = "Second view",
+                      .snapshot = progress.second,
+                      .hint = failure.empty() ? "Nothing is shown yet" : failure,
+                      .track = session.second->track,
+                      .leader = session.cameras_linked ? &first() : nullptr});
   }
-  const auto count = static_cast<float>(shown.size());
+  const auto count = static_cast<float>(inputs.size());
   const float gap = kSplitterSize * ui.scale;
   const float width = std::max((size.x - (count - 1) * gap) / count, 1.0F);
-  // Each view with a camera of its own flies there.
+  // Every view with a camera of its own gets the request.
   const std::optional<BodySelection::Bodies> fly_to = session.selection.fly_to;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  for (std::size_t i = 0; i < shown.size(); ++i) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
     View& view = list_[i];
-    const View::Shown& what = shown[i];
-    if (what.leader == nullptr && !session.selection.fly_to) session.selection.fly_to = fly_to;
-    beginAt(what.name, {position.x + static_cast<float>(i) * (size.x - width), position.y},
+    const View::Input& input = inputs[i];
+    if (input.leader == nullptr && !session.selection.fly_to) session.selection.fly_to = fly_to;
+    beginAt(input.name, {position.x + static_cast<float>(i) * (size.x - width), position.y},
             {width, size.y}, ImGuiWindowFlags_NoScrollbar);
-    view.draw(ui, session, progress, what);
+    view.draw(ui, session, progress, input);
     ImGui::End();
-    if (what.leader != nullptr && view.moved()) first().follow(view);
+    if (input.leader != nullptr && view.cameraMoved()) first().copyCamera(view);
   }
   ImGui::PopStyleVar();
 }

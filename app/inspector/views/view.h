@@ -1,4 +1,4 @@
-// The views of the scene: their cameras, and what the mouse does in them.
+// The views of the scene, with their cameras and mouse controls.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace broadmark {
 
-/// Keys that fly while they are held and the mouse is over the view.
+/// A key that moves the camera while it is held and the mouse is over the view.
 struct FlyKey {
   Key key = 0;
   std::array<float, 3> direction{};  ///< forward, right, up
@@ -30,54 +30,53 @@ std::span<const FlyKey> flyKeys();
 
 class View {
  public:
-  /// What a view shows in a picture.
-  struct Shown {
+  /// The input of a view in a picture.
+  struct Input {
     const char* name = "";
-    std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing…
-    std::string hint;                          ///< …for this reason
+    std::shared_ptr<const Snapshot> snapshot;  ///< null: draws `hint`
+    std::string hint;                          ///< reason for drawing no scene
     int track = 0;                             ///< number of the answer's track; 0: the oracle's
-    bool has_hands = false;                    ///< the document's bodies can be moved in it
+    bool editable = false;                     ///< the document's bodies can be moved
     const View* leader = nullptr;  ///< view to copy the camera from; null: its own camera
   };
   explicit View(const Gl& gl) : scene_(gl) {}
 
   /// Fills the current window.
-  void draw(Ui& ui, Session& session, const RunProgress& progress, const Shown& shown);
-  /// Takes over the other one's camera.
-  void follow(const View& leader);
-  /// Whether the user has moved the camera in the last picture.
-  [[nodiscard]] bool moved() const { return moved_; }
-  /// Whether it moves by itself.
+  void draw(Ui& ui, Session& session, const RunProgress& progress, const Input& input);
+  void copyCamera(const View& leader);
+  /// Whether the user moved the camera in the last picture.
+  [[nodiscard]] bool cameraMoved() const { return camera_moved_; }
+  /// Whether the camera is in flight.
   [[nodiscard]] bool needsRedraw() const { return flight_.has_value(); }
   [[nodiscard]] const ViewContent& content() const { return content_; }
   /// Labels of the shown answer.
   [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
-  /// What the mouse does with bodies.
-  [[nodiscard]] ViewportManipulator& hands() { return hands_; }
+  /// Edits the document's bodies with the mouse.
+  [[nodiscard]] ViewportManipulator& hands() { return manipulator_; }
 
-  void lookFrom(Direction direction);
-  void lookAtAll();
+  void viewFrom(Direction direction);
+  void showWholeScene();
 
  private:
   struct Flight {
     OrbitCamera from;
     OrbitCamera to;
-    float part = 0;
+    float progress = 0;  ///< from 0 to 1
   };
 
   void drawEmpty(Ui& ui, const std::string& hint);
   void drawScene(const Ui& ui);
-  /// Of a scene that has not been looked at so far.
+  /// Resets the camera for a new scene.
   void placeCamera(const Snapshot& snapshot);
-  void takeFlightRequest(Session& session);
-  void fly(const OrbitCamera& to);
-  void moveOn(float seconds);
-  void handleMouse(Ui& ui, const ViewportManipulator::Seen& seen);
-  void handleRelease(const ViewportManipulator::Seen& seen);
+  void startRequestedFlight(Session& session);
+  void flyTo(const OrbitCamera& to);
+  void advanceFlight(float seconds);
+  void handleMouse(Ui& ui, const ViewportManipulator::Input& input);
+  void handleRelease(const ViewportManipulator::Input& input);
   void handleDrag();
   void handleKeys();
-  void beginDrag(const ViewportManipulator::Seen& seen);
+  void beginDrag(const ViewportManipulator::Input& input);
   void click(Session& session, bool fly_there);
   void selectWithin(Session& session);
   void drawAxisNames(float scale) const;
@@ -88,17 +87,17 @@ class View {
   ViewSpace space_;
   OrbitCamera camera_;
   std::optional<Flight> flight_;
-  bool moved_ = false;
-  std::shared_ptr<const FrameProviderRequest> source_;  ///< the camera has been placed for
+  bool camera_moved_ = false;
+  std::shared_ptr<const FrameProviderRequest> source_;  ///< of the camera's placement
   AnswerText answer_;
-  ViewportManipulator hands_;
-  // In pixels, of the present picture.
+  ViewportManipulator manipulator_;
+  // In pixels, of the current picture.
   ImVec2 corner_;
   ImVec2 size_{1, 1};
-  ImVec2 mouse_;  ///< beside the corner
-  enum class Drag { none, orbit, pan, rectangle, hands } drag_ = Drag::none;
+  ImVec2 mouse_;  ///< relative to corner_
+  enum class Drag { none, orbit, pan, rectangle, manipulate } drag_ = Drag::none;
   ImVec2 drag_from_;
-  bool dragged_ = false;  ///< the mouse has moved since the button went down
+  bool dragged_ = false;  ///< the mouse has moved since the press
 };
 
 /// The views, side by side.
@@ -106,11 +105,11 @@ class Views {
  public:
   explicit Views(const Gl& gl) : list_{View(gl), View(gl)} {}
 
-  /// Draws those that are wanted into a rectangle.
+  /// Draws the open views into a rectangle.
   void draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position, ImVec2 size);
   /// Whether a camera is in flight.
   [[nodiscard]] bool needsRedraw() const { return std::ranges::any_of(list_, &View::needsRedraw); }
-  /// Of what is played.
+  /// The view of the playback.
   [[nodiscard]] View& first() { return list_.front(); }
   [[nodiscard]] const std::array<View, 2>& list() const { return list_; }
 

@@ -14,19 +14,19 @@ constexpr std::size_t kMaxXrayed = 2000;
 
 Aabb ViewContent::boundsOf(std::span<const std::uint32_t> bodies) const {
   Aabb bounds = kEmptyBox;
-  for (const std::uint32_t body : bodies) bounds = merged(bounds, (*shown_.snapshot->boxes)[body]);
+  for (const std::uint32_t body : bodies) bounds = merged(bounds, (*input_.snapshot->boxes)[body]);
   return bounds;
 }
 
 bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
                          const std::shared_ptr<const PairComparison>& comparison,
                          const Session& session, bool dark) {
-  // What has just been added is selected already, but not to be seen yet.
+  // New bodies are selected before the first snapshot that contains them.
   std::vector<std::uint32_t> selection = session.selection.bodies();
   std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
-  Shown shown{snapshot, comparison, std::move(selection), session.display, dark};
-  if (shown == shown_) return false;
-  shown_ = std::move(shown);
+  Input input{snapshot, comparison, std::move(selection), session.display, dark};
+  if (input == input_) return false;
+  input_ = std::move(input);
   picture.world = snapshot->scene.world;
   picture.shows_world = session.display.world_box;
   picture.shows_grid = session.display.ground;
@@ -41,9 +41,9 @@ bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
 }
 
 void ViewContent::updateBodies() {
-  const Snapshot& snapshot = *shown_.snapshot;
-  const ColourMode& mode = shown_.options.colourMode();
-  ColouringInput input{
+  const Snapshot& snapshot = *input_.snapshot;
+  const ColourMode& mode = input_.options.colourMode();
+  ColouringInput colouring_input{
       .boxes = *snapshot.boxes,
       .previous = snapshot.boxes_before ? std::span<const Aabb>(*snapshot.boxes_before)
                                         : std::span<const Aabb>(),
@@ -54,29 +54,29 @@ void ViewContent::updateBodies() {
       .missed = snapshot.difference.missed_pairs,
       .false_pairs = snapshot.difference.false_pairs,
       .comparison = nullptr,
-      .dark = shown_.dark};
+      .dark = input_.dark};
   ColouringInput::Comparison comparison;
-  if (shown_.comparison) {
-    comparison = {shown_.comparison->first_only, shown_.comparison->second_only};
-    input.comparison = &comparison;
+  if (input_.comparison) {
+    comparison = {input_.comparison->first_only, input_.comparison->second_only};
+    colouring_input.comparison = &comparison;
   }
   oracle_legend.clear();
   if (mode.of_answer && snapshot.checked) {
-    input.overlaps = snapshot.right_overlaps;
-    mode.colour(input, colouring);
+    colouring_input.overlaps = snapshot.oracle_overlaps;
+    mode.colour(colouring_input, colouring);
     oracle_legend = std::move(colouring.legend);
-    input.overlaps = snapshot.overlaps;
+    colouring_input.overlaps = snapshot.overlaps;
   }
-  mode.colour(input, colouring);
+  mode.colour(colouring_input, colouring);
   picture.boxes = *snapshot.boxes;
   picture.colours = colouring.colours;
-  picture.selected = shown_.selection;
+  picture.selected = input_.selection;
   picture.bodies_revision = revision_;
 }
 
 void ViewContent::updateVisible() {
-  const Snapshot& snapshot = *shown_.snapshot;
-  const DisplayOptions& options = shown_.options;
+  const Snapshot& snapshot = *input_.snapshot;
+  const DisplayOptions& options = input_.options;
   visible_.clear();
   if (!options.hide_free && !options.filter.hides()) return;
   visible_.assign(snapshot.boxes->size(), 1);
@@ -84,7 +84,7 @@ void ViewContent::updateVisible() {
     for (std::size_t body = 0; body < visible_.size(); ++body) {
       visible_[body] = snapshot.overlaps[body] > 0 ? 1 : 0;
     }
-    // What is missing is what one looks for.
+    // Bodies of missed pairs are always of interest.
     for (const Pair& pair : snapshot.difference.missed_pairs) {
       visible_[pair.a] = visible_[pair.b] = 1;
     }
@@ -95,13 +95,13 @@ void ViewContent::updateVisible() {
               .classes = colouring.classes,
               .world = snapshot.scene.world},
              visible_);
-  for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
+  for (const std::uint32_t body : input_.selection) visible_[body] = 1;
 }
 
 void ViewContent::addXray() {
   for (const std::uint32_t body :
-       std::span(shown_.selection).first(std::min(kMaxXrayed, shown_.selection.size()))) {
-    wire_boxes_.push_back({.box = (*shown_.snapshot->boxes)[body],
+       std::span(input_.selection).first(std::min(kMaxXrayed, input_.selection.size()))) {
+    wire_boxes_.push_back({.box = (*input_.snapshot->boxes)[body],
                            .colour = picture.theme.selected,
                            .width = 2.5F,
                            .behind = OcclusionStyle::shown});
@@ -111,7 +111,7 @@ void ViewContent::addXray() {
 void ViewContent::add(Overlay overlay) {
   lines_.insert(lines_.end(), overlay.lines.begin(), overlay.lines.end());
   wire_boxes_.insert(wire_boxes_.end(), overlay.boxes.begin(), overlay.boxes.end());
-  left_out += overlay.left_out;
+  left_out += overlay.dropped;
   if (!overlay.legend.empty()) cell_legend = std::move(overlay.legend);
 }
 
@@ -135,16 +135,16 @@ void ViewContent::addTrails(std::span<const Trail> trails) {
 }
 
 void ViewContent::updateLines() {
-  const Snapshot& snapshot = *shown_.snapshot;
+  const Snapshot& snapshot = *input_.snapshot;
   const std::span<const Aabb> boxes = *snapshot.boxes;
-  const DisplayOptions& options = shown_.options;
+  const DisplayOptions& options = input_.options;
   lines_.clear();
   wire_boxes_.clear();
   left_out = 0;
   cell_legend.clear();
   const std::optional<std::span<const std::uint32_t>> selected =
-      options.lines_of_all ? std::nullopt
-                           : std::optional<std::span<const std::uint32_t>>(shown_.selection);
+      options.all_pair_lines ? std::nullopt
+                             : std::optional<std::span<const std::uint32_t>>(input_.selection);
   if (options.pair_lines) {
     const PairRun pairs = snapshot.pairs;
     add(pairLines(boxes, {&pairs, 1}, {.colour = picture.theme.pair}, selected));
@@ -155,11 +155,11 @@ void ViewContent::updateLines() {
         {.colour = picture.theme.missed, .width = 2.5F, .behind = OcclusionStyle::shown}));
   }
   if (snapshot.structure && options.structure) {
-    StructureLook look{.by_population = options.structure_population, .dark = shown_.dark};
+    StructureStyle look{.by_population = options.structure_population, .dark = input_.dark};
     if (options.structure_level >= 0) {
       look.first_level = look.last_level = options.structure_level;
     }
-    const Aabb selected_box = boundsOf(shown_.selection);
+    const Aabb selected_box = boundsOf(input_.selection);
     if (options.structure_near && !isEmpty(selected_box)) look.near = selected_box;
     add(structureOverlay(*snapshot.structure, look));
   }

@@ -1,4 +1,4 @@
-// What a view of the scene shows: bodies with their colours, lines and boxes over them, legends.
+// The content of a view: coloured bodies, lines and boxes over them, legends.
 #pragma once
 
 #include <algorithm>
@@ -20,40 +20,40 @@ class ViewContent {
   ViewContent(const ViewContent&) = delete;
   ViewContent& operator=(const ViewContent&) = delete;
 
-  /// Takes over what is to be seen, with the session's options and selection. `comparison`: with
-  /// the other view; null: none. Returns whether anything is otherwise than before.
+  /// Updates the content from the snapshot and the session's options and selection. `comparison`:
+  /// with the other view; null: none. Returns whether anything has changed.
   bool update(const std::shared_ptr<const Snapshot>& snapshot,
               const std::shared_ptr<const PairComparison>& comparison, const Session& session,
               bool dark);
 
-  /// Null before the first update(); all that follows is only there after it.
-  [[nodiscard]] const std::shared_ptr<const Snapshot>& snapshot() const { return shown_.snapshot; }
-  [[nodiscard]] const std::vector<std::uint32_t>& selection() const { return shown_.selection; }
-  /// How many bodies are not drawn because the user does not want to see them.
+  /// Null before the first update(); the other members are valid only after it.
+  [[nodiscard]] const std::shared_ptr<const Snapshot>& snapshot() const { return input_.snapshot; }
+  [[nodiscard]] const std::vector<std::uint32_t>& selection() const { return input_.selection; }
+  /// Number of bodies hidden by the display options.
   [[nodiscard]] std::size_t hiddenBodies() const {
     return static_cast<std::size_t>(std::ranges::count(visible_, 0));
   }
-  /// Of those that are present; empty if there are none.
+  /// Returns the bounds of the present ones among the bodies; empty if none is.
   [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
 
-  SceneViewContent picture;  ///< to be drawn, once it is said in which space and at what scale
+  SceneViewContent picture;  ///< without `space` and `scale`
   Colouring colouring;
-  /// Like the colouring's legend, of the oracle's answer where the colours tell of another one.
+  /// The colouring's legend for the oracle's answer, if the colours depend on another answer.
   std::vector<LegendEntry> oracle_legend;
-  /// What the colours of the shown structure mean, and how many of its cells have each.
+  /// Legend of the structure's cell colours, with the number of cells of each.
   std::vector<LegendEntry> cell_legend;
-  std::size_t left_out = 0;  ///< lines and boxes that were too many
+  std::size_t left_out = 0;  ///< lines and boxes beyond the limit
 
  private:
-  /// What all was made from.
-  struct Shown {
+  /// The arguments of the last update().
+  struct Input {
     std::shared_ptr<const Snapshot> snapshot;
     std::shared_ptr<const PairComparison> comparison;
     std::vector<std::uint32_t> selection;
     DisplayOptions options;
     bool dark = false;
 
-    friend bool operator==(const Shown&, const Shown&) = default;
+    friend bool operator==(const Input&, const Input&) = default;
   };
 
   void updateBodies();
@@ -63,7 +63,7 @@ class ViewContent {
   void addTrails(std::span<const Trail> trails);
   void addXray();
 
-  Shown shown_;
+  Input input_;
   std::vector<std::uint8_t> visible_;
   std::vector<SceneLine> lines_;
   std::vector<SceneWireBox> wire_boxes_;

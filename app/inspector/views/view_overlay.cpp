@@ -12,13 +12,13 @@
 namespace broadmark {
 namespace {
 
-constexpr float kBackdrop = 0.82F;  // opacity behind what is written
+constexpr float kBackdrop = 0.82F;  // opacity behind text
 
-/// By verdict.
+/// Indexed by verdict.
 constexpr Rgb Palette::*kVerdictColours[] = {&Palette::faint, &Palette::good, &Palette::bad,
                                              &Palette::warning};
 
-/// A row of the legend; columns: what it means, the count by the shown answer, by the oracle's.
+/// A row of the legend; columns: meaning, count by the shown answer, count by the oracle's.
 struct LegendRow {
   std::optional<Rgb> swatch;  ///< nothing: a heading
   std::array<std::string, 3> texts;
@@ -45,28 +45,28 @@ std::vector<LegendRow> legendRows(const ViewContent& content, const std::string&
 ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 size) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float pad = 6 * ui.scale;
-  const float room = size.x - 4 * pad;
-  if (room < 60 * ui.scale || size.y < 120 * ui.scale) return corner;
+  const float max_width = size.x - 4 * pad;
+  if (max_width < 60 * ui.scale || size.y < 120 * ui.scale) return corner;
   struct TextLine {
     ImFont* font;
     std::string text;
     ImU32 colour;
   };
   std::vector<TextLine> lines;
-  // All of one size: large, if there is room for that.
+  // All in one size: large if they fit.
   const auto fits = [&](const std::string& text) {
-    return ui.large->CalcTextSizeA(ui.large->FontSize, FLT_MAX, 0, text.c_str()).x <= room;
+    return ui.large->CalcTextSizeA(ui.large->FontSize, FLT_MAX, 0, text.c_str()).x <= max_width;
   };
   ImFont* const normal = ImGui::GetFont();
   ImFont* const large =
-      fits(answer.where) && fits(answer.answer) && fits(answer.beside) ? ui.large : normal;
+      fits(answer.where) && fits(answer.answer) && fits(answer.comparison) ? ui.large : normal;
   const auto add = [&](ImFont* font, const std::string& text, ImU32 rgb) {
-    if (!text.empty()) lines.push_back({font, fittingText(text, room, font), rgb});
+    if (!text.empty()) lines.push_back({font, fittingText(text, max_width, font), rgb});
   };
   const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
   add(large, answer.where, plain);
   add(large, answer.answer, plain);
-  add(large, answer.beside,
+  add(large, answer.comparison,
       colour(ui.theme.*kVerdictColours[static_cast<std::size_t>(answer.verdict)]));
   add(normal, answer.pair, plain);
 
@@ -90,7 +90,7 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
 }
 
 void drawLegend(const Ui& ui, const ViewContent& content, const std::string& owner, ImVec2 corner,
-                ImVec2 size, ImVec2 taken) {
+                ImVec2 size, ImVec2 answer_end) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float pad = 0.5F * line;
@@ -108,7 +108,7 @@ void drawLegend(const Ui& ui, const ViewContent& content, const std::string& own
       content.left_out > 0 ? fmt::format("{} lines left out", content.left_out) : "";
   const auto height = static_cast<float>(rows.size() + (left_out.empty() ? 0 : 1)) * line;
   const float left = corner.x + size.x - width - 2 * pad;
-  const float top = left > taken.x + pad ? corner.y : taken.y;
+  const float top = left > answer_end.x + pad ? corner.y : answer_end.y;
   const ImVec2 at{left, top + pad / 2};
   if (at.x < corner.x || at.y + height + pad > corner.y + size.y) return;
   draw.AddRectFilled(at, {at.x + width + pad, at.y + height + pad},
@@ -123,7 +123,7 @@ void drawLegend(const Ui& ui, const ViewContent& content, const std::string& own
     }
     float x = at.x + pad + line;
     for (std::size_t column = 0; column < columns; ++column) {
-      // Numbers stand below each other by their last digits.
+      // Numbers are right-aligned.
       const char* text = row.texts[column].c_str();
       const float shift = column == 0 ? 0 : widths[column] - ImGui::CalcTextSize(text).x;
       draw.AddText({x + shift, y}, row.swatch ? plain : colour(ui.theme.faint), text);
@@ -138,13 +138,13 @@ void drawLegend(const Ui& ui, const ViewContent& content, const std::string& own
 
 float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   constexpr std::pair<Tool, const char*> kButtons[] = {
-      {Tool::move, "Moves the selected bodies by their handles (M)"},
-      {Tool::turn, "Turns the selected bodies about their common centre (T)"},
-      {Tool::scale, "Scales the selected bodies about their common centre (R)"},
-      {Tool::brush, "Paints bodies where one clicks and drags (B)"}};
+      {Tool::move, "Move the selected bodies by their handles (M)"},
+      {Tool::turn, "Turn the selected bodies about their common centre (T)"},
+      {Tool::scale, "Scale the selected bodies about their common centre (R)"},
+      {Tool::brush, "Paint bodies by clicks and drags (B)"}};
   Tools& tools = session.document.tools;
   const bool brush = tools.tool == Tool::brush;
-  const char* hint = "Click or drag to paint; Escape ends it";
+  const char* hint = "Click or drag to paint; Escape to stop";
   const ImGuiStyle& style = ImGui::GetStyle();
   const float button = 54 * ui.scale;
   const float pad = 6 * ui.scale;
@@ -171,10 +171,10 @@ float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
     if (ui.toggle(label.c_str(), on, tip, button)) tools.toggle(tool);
   }
   const float half = (width - 2 * pad - gap) / 2;
-  ui.toggle("Local", tools.local, "The axes of the first selected body, not the world's (L)", half);
-  ImGui::SameLine();
-  ui.toggle("Snap", tools.snaps, "Drags go by steps; with Ctrl down it is the other way round",
+  ui.toggle("Local", tools.local, "Use the axes of the first selected body, not the world's (L)",
             half);
+  ImGui::SameLine();
+  ui.toggle("Snap", tools.snaps, "Drag in steps; Ctrl inverts this", half);
   ImGui::EndDisabled();
   ImGui::EndChild();
   ImGui::PopStyleColor();

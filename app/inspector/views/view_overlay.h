@@ -10,17 +10,15 @@
 
 namespace broadmark {
 
-/// Writes into the upper left corner of the view. Returns the lower right corner of that.
+/// Draws the text of the answer in the upper left corner. Returns its lower right corner.
 ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 size);
 
-/// What the colours of the content mean, beside the oracle's counts where these differ from those
-/// of `owner`. In the upper right corner, below what is `taken` by drawAnswer() if need be; left
-/// out where there is no room.
+/// Draws the legend in the upper right corner, below `answer_end` if it would overlap the answer,
+/// with the counts of `owner` and, if they may differ, of the oracle. Omitted if too large.
 void drawLegend(const Ui& ui, const ViewContent& content, const std::string& owner, ImVec2 corner,
-                ImVec2 size, ImVec2 taken);
+                ImVec2 size, ImVec2 answer_end);
 
-/// Buttons of the tools in the lower right corner; left out where there is no room. Returns the
-/// height of what is free above them.
+/// Draws the tool buttons in the lower right corner, if they fit. Returns the free height above.
 float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// What the forms of the panel Batch share.
+// The base of the forms of the panel Batch.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,11 +15,10 @@ class BatchForm : protected PanelContext {
  protected:
   explicit BatchForm(const PanelContext& context) : PanelContext(context) {}
 
-  /// An input for a folder, and a button that asks for one. `folder` and `changed` outlive the
-  /// dialog.
+  /// Draws an input for a folder with a "Browse…" button. Both references outlive the dialog.
   void drawFolder(const char* label, const char* title, std::string& folder, bool& changed) {
     changed |= ui.text(label, folder, "directory");
-    if (!wideButton("Browse…", "Chooses the directory")) return;
+    if (!wideButton("Browse…", "Choose the directory")) return;
     files.ask({.title = title,
                .purpose = FileDialog::Purpose::directory,
                .suggestion = folder,
@@ -29,19 +28,19 @@ class BatchForm : protected PanelContext {
                }});
   }
 
-  /// A button that starts the work, or how far it is, with a button that ends it. Returns whether
-  /// it is to be started.
+  /// Draws a button that starts the work or, while it runs, its progress and a button that cancels
+  /// it. Returns whether "Start" was pressed.
   template <class Work>
-  bool drawStart(Work& work, const char* started, const char* kept) {
-    if (!work.running()) return wideButton("Start", started);
+  bool drawStart(Work& work, const char* start_tip, const char* cancel_tip) {
+    if (!work.running()) return wideButton("Start", start_tip);
     const auto report = work.report();
     ImGui::ProgressBar(report.fraction, {-70 * ui.scale, 0});
     ImGui::SameLine();
-    if (wideButton("Cancel", kept)) work.cancel();
-    const std::string left = report.seconds_left > 0
-                                 ? fmt::format("about {} left; ", waitingTime(report.seconds_left))
-                                 : "";
-    ui.faintParagraph(left + report.doing);
+    if (wideButton("Cancel", cancel_tip)) work.cancel();
+    const std::string remaining =
+        report.seconds_left > 0 ? fmt::format("about {} left; ", waitingTime(report.seconds_left))
+                                : "";
+    ui.faintParagraph(remaining + report.activity);
     return false;
   }
 };
