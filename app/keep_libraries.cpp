@@ -1,5 +1,5 @@
-// Part of builds with sanitizers only. Libraries that have been loaded stay until the end: a leak
-// in one that has gone could no longer be told by its name, as tests/leaks.supp does.
+// Only in builds with sanitizers: keeps libraries loaded until the program ends, so that a leak
+// report can name the library, as tests/leaks.supp needs it.
 
 #include <dlfcn.h>
 

@@ -1,5 +1,5 @@
 // broadmark: generates scenes, runs broad-phase algorithms on them, checks and measures them.
-// How it ends: exit_status.h.
+// Exit statuses: exit_status.h.
 
 #include <cstdio>
 #include <cstdlib>
@@ -26,8 +26,7 @@ void requirePrinted() {
 
 std::terminate_handler previous_terminate_handler = nullptr;
 
-/// Memory may also run out in a destructor (JSON's takes some), from where nothing is thrown to
-/// main().
+/// Handles std::bad_alloc that main() cannot catch: thrown in a destructor (JSON's allocates).
 void onTerminate() {
   try {
     if (const auto error = std::current_exception()) std::rethrow_exception(error);
@@ -42,22 +41,22 @@ void onTerminate() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Whatever a file claims, it ends this program rather than the machine.
+  // Cap memory, so that a corrupt size field in a file cannot exhaust the machine.
   previous_terminate_handler = std::set_terminate(onTerminate);
-  broadmark::limitMemory(broadmark::machineMemory(), /*for_good=*/false);
+  broadmark::limitMemory(broadmark::machineMemory(), /*permanent=*/false);
   try {
     const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();
     requirePrinted();
     return status;
-  } catch (const broadmark::Interrupted& end) {
-    std::cerr << "broadmark: " << end.what() << '\n';
+  } catch (const broadmark::Interrupted& interruption) {
+    std::cerr << "broadmark: " << interruption.what() << '\n';
     return broadmark::exit_status::interrupted;
   } catch (const broadmark::InputError& error) {
     std::cerr << "broadmark: " << error.what() << '\n';
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << "broadmark: " << error.path1().string() << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {
-    // The system refused something, such as a write or a thread: no internal error.
+    // A system call failed, such as a write or a thread start: not an internal error.
     std::cerr << "broadmark: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {
     std::cerr << "broadmark: out of memory\n";

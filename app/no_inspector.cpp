@@ -1,4 +1,4 @@
-// Stands for the folder inspector/ in a build without it.
+// Replaces the folder inspector/ in builds without the inspector.
 
 #include "broadmark/error.h"
 #include "inspector/run_inspector.h"

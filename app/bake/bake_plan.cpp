@@ -1,4 +1,4 @@
-// Planning is cheap except for existing recordings: each is read through once, for its hash.
+// Planning is cheap except for existing recordings, which are read completely to verify their hash.
 
 #include "bake/bake_plan.h"
 
@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every combination, each once.
+/// Creates a job for every combination, without duplicates.
 std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::vector<BakeJob> jobs;
-  std::set<std::vector<fs::path>> taken;
+  std::set<std::vector<fs::path>> planned;
   std::vector<std::string> parameters;
   for (const std::string& name : options.sources.empty() ? sceneIds() : options.sources) {
     NamedSource scene(name);
@@ -33,29 +33,29 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
       job.paths = recordingPaths(options.record, job.scene, swept, options.scene.recorders);
       requireBakeable(*job.simulation, job.paths);
       std::ranges::move(parameterNames(*job.simulation), std::back_inserter(parameters));
-      if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
+      if (planned.insert(job.paths).second) jobs.push_back(std::move(job));
     }
   }
   requireKnownParameters(options.parameters, std::move(parameters));
   return jobs;
 }
 
-/// Throws InputError when the recordings would not fit on the disc.
+/// Throws InputError if the recordings do not fit on the disc.
 void requireRoom(const BakePlan& plan, const fs::path& output) {
   // A sidecar beside each recording takes whole blocks.
   constexpr std::uint64_t kSidecarBytes = 1 << 13;
-  fs::path there = fs::absolute(output);
-  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
-  std::error_code unknown;
-  const std::uint64_t free = fs::space(there, unknown).available;
+  fs::path existing = fs::absolute(output);
+  while (!fs::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
+  std::error_code failed;
+  const std::uint64_t free = fs::space(existing, failed).available;
   const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
-  if (unknown || needed <= free) return;
+  if (failed || needed <= free) return;
   throw InputError(fmt::format("{}: not enough room: {} would take {} bytes, but only {} are free",
                                output.string(), counted(plan.recordings(), "recording"), needed,
                                free));
 }
 
-/// Throws InputError when a recording cannot be written.
+/// Throws InputError if a recording cannot be written.
 void requireWritable(const BakePlan& plan) {
   for (const BakeJob& job : plan.pending) {
     for (const fs::path& path : job.paths) {
@@ -67,8 +67,8 @@ void requireWritable(const BakePlan& plan) {
 
 }  // namespace
 
-std::uint64_t leastBytes(const fs::path& path, SceneInfo scene) {
-  // What changes from frame to frame is not known yet.
+std::uint64_t minBytes(const fs::path& path, SceneInfo scene) {
+  // The changes between frames are not known yet.
   if (path.extension() == kBroadmarkExtension) scene.frames = 0;
   return recordingBytes(scene);
 }
@@ -82,7 +82,7 @@ std::size_t BakePlan::recordings() const {
 std::uint64_t BakePlan::bytes() const {
   std::uint64_t sum = 0;
   for (const BakeJob& job : pending) {
-    for (const fs::path& path : job.paths) sum += leastBytes(path, job.scene);
+    for (const fs::path& path : job.paths) sum += minBytes(path, job.scene);
   }
   return sum;
 }

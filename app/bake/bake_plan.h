@@ -1,5 +1,5 @@
-// Which recordings a batch is to bake, found out before anything is simulated. Prints nothing:
-// command line and inspector alike plan with planBake(), then hand the jobs to bakeAll().
+// Determines which recordings a batch has to bake, before any simulation. Prints nothing: both
+// command line and inspector call planBake(), then pass the jobs to bakeAll().
 #pragma once
 
 #include <cstdint>
@@ -13,38 +13,38 @@
 
 namespace broadmark {
 
-/// What is to be baked: the recordings of the request's scenes (built-in ones, and files that
-/// describe a scene; none: all), into its directory.
+/// Options of a batch: bakes the request's scenes (built-in ones, and files that describe a scene;
+/// none: all) into its directory.
 struct BakeOptions : RunRequest {
   int threads = 1;
-  bool force = false;  ///< also what is already there
+  bool force = false;  ///< bake existing recordings again
 };
 
-/// The size of a recording that is to be written: exact, but for .broadmark, which will be larger.
-std::uint64_t leastBytes(const std::filesystem::path& path, SceneInfo scene);
+/// Size of a recording before it is written: exact, except for .broadmark, which will be larger.
+std::uint64_t minBytes(const std::filesystem::path& path, SceneInfo scene);
 
-/// A batch before it begins.
+/// A batch before it starts.
 struct BakePlan {
-  std::vector<BakeJob> pending;  ///< only with the recordings that are to be written
+  std::vector<BakeJob> pending;  ///< only with the recordings to write
   std::vector<std::filesystem::path> kept;
 
-  /// How many recordings are to be written.
+  /// Number of recordings to write.
   [[nodiscard]] std::size_t recordings() const;
-  /// Their leastBytes() on the disc, without the sidecars.
+  /// Their total minBytes(), without sidecars.
   [[nodiscard]] std::uint64_t bytes() const;
 };
 
-/// Told before an existing recording is checked, the `number`-th of `total`; returning false stops.
+/// Called before existing recording `number` of `total` is checked; returning false stops.
 using PlanProgress =
     std::function<bool(const std::filesystem::path&, std::uint64_t number, std::uint64_t total)>;
 
-/// Every combination of the options' scenes and parameter values once. What is already
-/// there is kept; to know that, those recordings are read through, unless `force`. Nothing when
-/// stopped. Throws InputError.
+/// Plans every combination of the options' scenes and parameter values, without duplicates. Unless
+/// `force`, existing recordings are kept, after they have been read to verify them. Returns nothing
+/// if stopped. Throws InputError.
 std::optional<BakePlan> planBake(const BakeOptions&, const PlanProgress& = {});
 
-/// Makes the directories. Throws InputError when the recordings would not fit on the disc or one of
-/// them cannot be written: to fail now rather than after hours.
+/// Creates the directories. Throws InputError if the recordings do not fit on the disc or cannot be
+/// written, to fail before hours of work.
 void prepare(const BakePlan&, const std::filesystem::path& output);
 
 }  // namespace broadmark

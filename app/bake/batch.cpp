@@ -1,5 +1,5 @@
-// A pool of threads that take the largest waiting job: longest processing time first, which ends at
-// most a third later than the best schedule (Graham 1969).
+// A pool of threads that each take the largest waiting job: longest processing time first, which
+// finishes at most a third later than the best schedule (Graham 1969).
 
 #include "bake/batch.h"
 
@@ -20,7 +20,7 @@
 namespace broadmark {
 namespace {
 
-/// Memory of a simulation per body, pairs and contacts included. Measured with Bullet: 9 kB in
+/// Memory of a simulation per body, including pairs and contacts. Measured with Bullet: 9 kB in
 /// FreeFall, 29 kB in Gravity at density 0.5.
 constexpr std::uint64_t kBytesPerBody = 32'000;
 
@@ -28,9 +28,9 @@ using Clock = std::chrono::steady_clock;
 
 /// A job with its progress.
 struct QueuedJob {
-  enum class Phase { waiting, running, ended, stopped };
+  enum class Phase { waiting, running, finished, stopped };
 
-  explicit QueuedJob(BakeJob what) : job(std::move(what)) {}
+  explicit QueuedJob(BakeJob bake_job) : job(std::move(bake_job)) {}
 
   [[nodiscard]] std::uint64_t memory() const { return job.bodies() * kBytesPerBody; }
 
@@ -54,16 +54,16 @@ class Batch {
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
 
-  void run(int threads, const std::function<void(const BakedJob&)>& ended,
+  void run(int threads, const std::function<void(const BakedJob&)>& on_finished,
            const std::function<bool(const BatchState&)>& progress) {
-    constexpr std::chrono::milliseconds kGlance{20};
+    constexpr std::chrono::milliseconds kPollInterval{20};
     while (std::cmp_less(threads_.size(), threads) && threads_.size() < queue_.size()) {
       threads_.push_back(std::async(std::launch::async, [this] { work(); }));
     }
     for (std::future<void>& thread : threads_) {
-      for (bool is_over = false; !is_over;) {
-        is_over = thread.wait_for(kGlance) == std::future_status::ready;
-        for (const BakedJob& job : takeEnded()) ended(job);
+      for (bool is_ready = false; !is_ready;) {
+        is_ready = thread.wait_for(kPollInterval) == std::future_status::ready;
+        for (const BakedJob& job : takeFinished()) on_finished(job);
         if (!progress(state())) stopping_ = true;
       }
       thread.get();
@@ -71,9 +71,9 @@ class Batch {
   }
 
  private:
-  std::vector<BakedJob> takeEnded() {
+  std::vector<BakedJob> takeFinished() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(ended_, {});
+    return std::exchange(finished_, {});
   }
 
   BatchState state() {
@@ -87,11 +87,11 @@ class Batch {
       const QueuedJob& queued = *entry;
       const std::uint64_t work = queued.job.work();
       const std::uint64_t done =
-          queued.phase == QueuedJob::Phase::ended ? work : queued.job.bodies() * queued.frame;
+          queued.phase == QueuedJob::Phase::finished ? work : queued.job.bodies() * queued.frame;
       state.total += work;
       state.done += done;
       longest = std::max(longest, work - done);
-      if (queued.phase == QueuedJob::Phase::ended) busy += queued.end - queued.begin;
+      if (queued.phase == QueuedJob::Phase::finished) busy += queued.end - queued.begin;
       if (queued.phase != QueuedJob::Phase::running) continue;
       ++running;
       busy += now - queued.begin;
@@ -100,7 +100,7 @@ class Batch {
           fmt::format("{}{} {} N{} frame {}/{}", state.running.empty() ? "" : ", ", scene.name,
                       scene.object_type, scene.objects, queued.frame.load(), scene.frames);
     }
-    // At the pace so far: all that run share what is left, but a recording has one thread.
+    // Extrapolated: running jobs share the remaining work, but a recording has a single thread.
     const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy.count();
     const double shared = static_cast<double>(state.total - state.done) / std::max(running, 1);
     state.seconds_left = std::max(shared, static_cast<double>(longest)) / pace;
@@ -109,7 +109,7 @@ class Batch {
 
   void work() {
     try {
-      while (QueuedJob* queued = take()) perform(*queued);
+      while (QueuedJob* queued = nextJob()) bakeJob(*queued);
     } catch (...) {  // an error that concerns the whole batch
       stopping_ = true;
       changed_.notify_all();
@@ -117,14 +117,15 @@ class Batch {
     }
   }
 
-  QueuedJob* take() {
+  /// Waits for a job that fits into memory. Returns null when stopped or without waiting jobs.
+  QueuedJob* nextJob() {
     std::unique_lock lock(mutex_);
     while (!stopped()) {
       bool waiting = false;
       for (const auto& queued : queue_) {
         if (queued->phase != QueuedJob::Phase::waiting) continue;
         waiting = true;
-        if (!fits(*queued)) continue;
+        if (!fitsIntoMemory(*queued)) continue;
         queued->phase = QueuedJob::Phase::running;
         queued->begin = Clock::now();
         return queued.get();
@@ -135,11 +136,11 @@ class Batch {
     return nullptr;
   }
 
-  void perform(QueuedJob& queued) {
+  void bakeJob(QueuedJob& queued) {
     std::string failure;
-    bool whole = false;
+    bool is_complete = false;
     try {
-      whole = bake(*queued.job.simulation, queued.job.paths, [&](std::uint32_t frame) {
+      is_complete = bake(*queued.job.simulation, queued.job.paths, [&](std::uint32_t frame) {
         queued.frame = frame;
         return !stopped();
       });
@@ -150,20 +151,20 @@ class Batch {
     }
     queued.job.simulation.reset();
     const std::lock_guard lock(mutex_);
-    const bool ended = whole || !failure.empty();
-    queued.phase = ended ? QueuedJob::Phase::ended : QueuedJob::Phase::stopped;
+    const bool finished = is_complete || !failure.empty();
+    queued.phase = finished ? QueuedJob::Phase::finished : QueuedJob::Phase::stopped;
     queued.end = Clock::now();
-    if (ended) ended_.push_back({queued.job.paths, std::move(failure)});
+    if (finished) finished_.push_back({queued.job.paths, std::move(failure)});
     changed_.notify_all();
   }
 
-  /// Whether there is memory for one more simulation. A single one may always queued.
-  [[nodiscard]] bool fits(const QueuedJob& candidate) const {
-    std::uint64_t taken = 0;
+  /// Whether there is memory for one more simulation. A single one may always run.
+  [[nodiscard]] bool fitsIntoMemory(const QueuedJob& candidate) const {
+    std::uint64_t used = 0;
     for (const auto& queued : queue_) {
-      if (queued->phase == QueuedJob::Phase::running) taken += queued->memory();
+      if (queued->phase == QueuedJob::Phase::running) used += queued->memory();
     }
-    return taken == 0 || taken + candidate.memory() <= memory_bytes_;
+    return used == 0 || used + candidate.memory() <= memory_bytes_;
   }
 
   [[nodiscard]] bool stopped() const { return stopping_ || InterruptGuard::requested(); }
@@ -173,16 +174,16 @@ class Batch {
   std::atomic<bool> stopping_ = false;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<BakedJob> ended_;  ///< guarded by mutex_
+  std::vector<BakedJob> finished_;  ///< guarded by mutex_
   std::vector<std::future<void>> threads_;
 };
 
 }  // namespace
 
 void bakeAll(std::vector<BakeJob> jobs, int threads,
-             const std::function<void(const BakedJob&)>& ended,
+             const std::function<void(const BakedJob&)>& on_finished,
              const std::function<bool(const BatchState&)>& progress) {
-  Batch(std::move(jobs)).run(threads, ended, progress);
+  Batch(std::move(jobs)).run(threads, on_finished, progress);
 }
 
 }  // namespace broadmark

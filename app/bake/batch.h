@@ -1,4 +1,4 @@
-// Many simulations baked at the same time.
+// Bakes many simulations concurrently.
 #pragma once
 
 #include <algorithm>
@@ -13,39 +13,39 @@
 
 namespace broadmark {
 
-/// A simulation to be baked.
+/// A simulation to bake.
 struct BakeJob {
-  std::unique_ptr<Simulation> simulation;  ///< dropped once it is baked
+  std::unique_ptr<Simulation> simulation;  ///< destroyed once baked
   SceneInfo scene;
-  std::vector<std::filesystem::path> paths;  ///< a recording each
+  std::vector<std::filesystem::path> paths;  ///< one recording each
 
   [[nodiscard]] std::uint64_t bodies() const { return std::max(scene.objects, 1U); }
-  /// In body-frames.
+  /// Work in body-frames.
   [[nodiscard]] std::uint64_t work() const { return bodies() * scene.frames; }
 };
 
-/// A job that has ended.
+/// A finished job.
 struct BakedJob {
   std::vector<std::filesystem::path> paths;
-  std::string failure;  ///< "": baked
+  std::string failure;  ///< error message; "": success
 };
 
 /// The progress of a batch.
 struct BatchState {
   std::uint64_t done = 0;   ///< body-frames
-  std::uint64_t total = 0;  ///< bodies x frames of the whole batch
+  std::uint64_t total = 0;  ///< body-frames of the whole batch
   double seconds_left = 0;
-  std::string running;  ///< the recordings being baked now, as text
+  std::string running;  ///< description of the running jobs
 };
 
-/// Bakes simulations, each on one thread, so that a recording does not depend on their number. The
-/// largest begin first, so that none of them is left for the end, and only as many run at a time as
-/// fit into memory. Meanwhile the calling thread calls `ended` for each job that has ended, and
-/// `progress` now and then and at the end. A job that fails does not stop the others. After an
-/// interruption (InterruptGuard), and once `progress` has returned false, unfinished ones leave
-/// nothing behind, and `ended` is not called for them.
+/// Bakes simulations, each on a single thread, so that recordings do not depend on the number of
+/// threads. The largest start first, and only as many run at a time as fit into memory. Meanwhile
+/// the calling thread calls `on_finished` for each finished job, and `progress` regularly and at
+/// the end. A failing job does not stop the others. After an interruption (InterruptGuard), or once
+/// `progress` has returned false, unfinished jobs leave no files, and `on_finished` is not called
+/// for them.
 void bakeAll(std::vector<BakeJob> jobs, int threads,
-             const std::function<void(const BakedJob&)>& ended,
+             const std::function<void(const BakedJob&)>& on_finished,
              const std::function<bool(const BatchState&)>& progress);
 
 }  // namespace broadmark

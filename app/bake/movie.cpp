@@ -1,4 +1,4 @@
-// Frames to PNG files: reading, finding the pairs, drawing and compressing, one frame at a time.
+// Draws frames to PNG files: reads, finds pairs, draws and compresses one frame at a time.
 
 #include "bake/movie.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::uint32_t picturesOf(const Recording& recording, const MovieOptions& options) {
+std::uint32_t pictureCount(const Recording& recording, const MovieOptions& options) {
   return recording.scene().frames / options.every + 1;
 }
 
@@ -30,7 +30,7 @@ fs::path picturePath(const fs::path& folder, std::uint32_t number) {
   return folder / fmt::format("frame_{:05}.png", number);
 }
 
-/// What the movie.json of a finished movie says.
+/// Content of a finished movie's movie.json.
 std::string label(Recording& recording, const MovieOptions& options) {
   return fmt::format(
       R"({{"schema": "broadmark-movie/1", "recording": "{}", "every": {}, "size": "{}x{}"}})"
@@ -38,8 +38,8 @@ std::string label(Recording& recording, const MovieOptions& options) {
       recording.hash(), options.every, options.picture.width, options.picture.height);
 }
 
-bool isMade(const fs::path& folder, const fs::path& label_path, const std::string& label,
-            std::uint32_t pictures) {
+bool isComplete(const fs::path& folder, const fs::path& label_path, const std::string& label,
+                std::uint32_t pictures) {
   if (!fs::exists(label_path) || readTextFile(label_path) != label) return false;
   for (std::uint32_t number = 0; number < pictures; ++number) {
     if (!fs::exists(picturePath(folder, number))) return false;
@@ -47,7 +47,7 @@ bool isMade(const fs::path& folder, const fs::path& label_path, const std::strin
   return true;
 }
 
-/// Removes an older movie: it may have been longer, and its label is about to be wrong.
+/// Removes an older movie, which may be longer and would not match its label any longer.
 void removeOlder(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
@@ -55,15 +55,15 @@ void removeOlder(const fs::path& folder) {
   }
 }
 
-/// Draws a recording, unless its movie is already there. False when `go_on(picture)` stopped it.
+/// Draws a recording unless its movie exists. Returns false when stopped by `progress(picture)`.
 bool makeMovie(OffscreenContext& context, const MovieOptions& options, Recording& recording,
-               const fs::path& folder, const std::function<bool(std::uint32_t)>& go_on) {
+               const fs::path& folder, const std::function<bool(std::uint32_t)>& progress) {
   const SceneInfo& scene = recording.scene();
   const fs::path label_path = folder / "movie.json";
   const std::string text = label(recording, options);
-  const std::uint32_t pictures = picturesOf(recording, options);
+  const std::uint32_t pictures = pictureCount(recording, options);
   makeDirectory(folder);
-  if (isMade(folder, label_path, text, pictures)) return true;
+  if (isComplete(folder, label_path, text, pictures)) return true;
   removeOlder(folder);
   for (std::uint32_t number = 0; number < pictures; ++number) {
     const Frame frame = recording.at(number * options.every);
@@ -71,7 +71,7 @@ bool makeMovie(OffscreenContext& context, const MovieOptions& options, Recording
     const PairRun all_pairs = pairs;
     writePng(picturePath(folder, number), drawFrame(context, scene, frame, {&all_pairs, 1},
                                                     options.picture.width, options.picture.height));
-    if (!go_on(number)) return false;
+    if (!progress(number)) return false;
   }
   writeTextFile(label_path, text);
   return true;
@@ -96,17 +96,17 @@ bool makeMovies(OffscreenContext& context, const MovieOptions& options,
   std::erase_if(recordings,
                 [&](const fs::path& path) { return !names.insert(path.stem()).second; });
   std::uint64_t total = 0;
-  for (const fs::path& path : recordings) total += picturesOf(*openRecordingFile(path), options);
+  for (const fs::path& path : recordings) total += pictureCount(*openRecordingFile(path), options);
   Progress progress(fmt::format("drawing {}", counted(recordings.size(), "movie")), total, quiet);
   std::uint64_t done = 0;
   for (const fs::path& path : recordings) {
     progress.detail(path.stem().string());
     const auto recording = openRecordingFile(path);
     const fs::path folder = options.directory / path.stem();
-    const auto go_on = [&](std::uint32_t picture) { return progress.goOn(done + picture); };
-    if (!makeMovie(context, options, *recording, folder, go_on)) return false;
+    const auto advance = [&](std::uint32_t picture) { return progress.advance(done + picture); };
+    if (!makeMovie(context, options, *recording, folder, advance)) return false;
     progress.print("movie  " + folder.string());
-    progress.update(done += picturesOf(*recording, options));
+    progress.update(done += pictureCount(*recording, options));
   }
   return true;
 }

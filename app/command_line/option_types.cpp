@@ -1,4 +1,4 @@
-// Options that several commands share.
+// Options shared by several commands.
 
 #include "command_line/option_types.h"
 
@@ -27,7 +27,7 @@ std::vector<std::string> recorderIds() {
   return ids;
 }
 
-/// Each once, in the order given.
+/// Returns the recorders without duplicates, in the given order.
 std::vector<std::string> parseRecorders(const std::vector<std::string>& names) {
   const std::vector<std::string> known = recorderIds();
   std::vector<std::string> recorders;
@@ -40,7 +40,7 @@ std::vector<std::string> parseRecorders(const std::vector<std::string>& names) {
   return recorders;
 }
 
-/// Ascending, each once.
+/// Returns the counts in ascending order, without duplicates.
 std::vector<std::uint32_t> parseObjectCounts(const std::vector<std::string>& texts) {
   std::vector<std::uint32_t> counts;
   for (const std::string& text : texts) {
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> parseObjectCounts(const std::vector<std::string>& tex
   return counts;
 }
 
-/// [ALGORITHM:]KEY=VALUE texts as parameter values; ALGORITHM is part of the key.
+/// Parses texts of the form [ALGORITHM:]KEY=VALUE; ALGORITHM becomes part of the key.
 ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
   ParameterValues values;
   for (const std::string& text : texts) {
@@ -78,25 +78,25 @@ void parseSize(const std::string& text, PictureOptions& options) {
   options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMaxPixels));
 }
 
-/// As an option of a list takes it.
+/// Joins values as the text of a list option.
 template <class List>
 std::string joined(const List& values) {
   return fmt::format("{}", fmt::join(values, ","));
 }
 
-/// A scene parameter with an option of its own.
+/// A scene parameter with its own option.
 struct SceneShortcut {
   const char* parameter;
   const char* type;
   const char* doc;
-  bool list = true;  ///< of several values, each makes a recording
+  bool list = true;  ///< several values are allowed: one recording per value
 };
 constexpr SceneShortcut kSceneShortcuts[] = {
-    {"frames", "F[,F...]", "frames to simulate, the initial pose not counted"},
+    {"frames", "F[,F...]", "frames to simulate, not counting the initial pose"},
     {"seed", "S[,S...]", "seeds: same seed, same recording"},
-    {"density", "D[,D...]", "share of the world's volume that bodies fill"},
-    {"engine", "NAME[,NAME...]", "what moves the bodies (see 'broadmark list engines')"},
-    {"input", "PATH", "recording, or directory of those, that an engine replays", false}};
+    {"density", "D[,D...]", "share of the world's volume filled by bodies"},
+    {"engine", "NAME[,NAME...]", "engines that move the bodies (see 'broadmark list engines')"},
+    {"input", "PATH", "recording, or directory of recordings, for an engine to replay", false}};
 
 }  // namespace
 
@@ -177,7 +177,7 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::st
       ->default_function([&] { return fmt::format("{}", fmt::join(target, "\n")); });
 }
 
-void showWith(const BuildPart& part, const std::vector<CLI::Option*>& options) {
+void hideWithout(const BuildPart& part, const std::vector<CLI::Option*>& options) {
   if (part.included) return;
   for (CLI::Option* option : options) option->description("");
 }
@@ -194,9 +194,9 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
   return app
       .add_option_function<std::vector<std::string>>(
           "--param", set,
-          "sets a parameter of scene or algorithm (see 'broadmark list'; repeatable); "
-          "KEY=A,B,C: a recording or case for each value, and for every combination; "
-          "ALGORITHM:KEY=VALUE: of these algorithms only, named as in --algorithm")
+          "set a parameter of a scene or algorithm (see 'broadmark list'; repeatable); "
+          "KEY=A,B,C: a recording or case for each value and for every combination; "
+          "ALGORITHM:KEY=VALUE: for these algorithms only, named as in --algorithm")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->default_function([&] {
@@ -246,17 +246,17 @@ std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& optio
   CLI::Option* size = addValue(
       app, "--size", "WxH", [&](const std::string& text) { parseSize(text, options); },
       [&] { return fmt::format("{}x{}", options.width, options.height); }, "size of the pictures");
-  CLI::Option* gl = addNamed(
-      app, "--gl", "SOURCE", options.gl, kGlSources,
-      fmt::format("where off-screen OpenGL comes from: {}", fmt::join(kGlSources.names(), ", ")));
-  showWith(parts::kRenderer, {size, gl});
+  CLI::Option* gl =
+      addNamed(app, "--gl", "SOURCE", options.gl, kGlSources,
+               fmt::format("source of off-screen OpenGL: {}", fmt::join(kGlSources.names(), ", ")));
+  hideWithout(parts::kRenderer, {size, gl});
   return {size, gl};
 }
 
 CLI::Option* addAnswer(CLI::App& app, AnswerKind& answer) {
   return addNamed(app, "--answer", "KIND", answer, kAnswerKinds,
-                  "what algorithms report of a frame: pairs: all; events: those that began and "
-                  "those that ended since the frame before");
+                  "what algorithms report for a frame: pairs: all pairs; events: pairs that began "
+                  "or ended since the previous frame");
 }
 
 CLI::Option* addDevice(CLI::App& app, std::string& device) {
@@ -264,30 +264,30 @@ CLI::Option* addDevice(CLI::App& app, std::string& device) {
       app, "--device", "NAME", device,
       "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
       "first, GPUs before CPUs)");
-  showWith(parts::kOpenCl, {option});
+  hideWithout(parts::kOpenCl, {option});
   return option;
 }
 
 std::vector<CLI::Option*> addHosts(CLI::App& app, HostOptions& hosts) {
   CLI::Option* in_process =
       addFlag(app, "--in-process", hosts.in_process,
-              "run all cases in this process, for debuggers and profilers, instead of each in "
-              "a worker process of its own: a crash or a hang then ends everything, and "
-              "memory is not measured");
+              "run all cases in this process, for debuggers and profilers, instead of one worker "
+              "process per case: a crash or a hang then ends the whole run, and memory is not "
+              "measured");
   CLI::Option* pin =
       addFlag(app, "--pin", hosts.pin,
-              "bind each thread of a case to a core of its own, the quietest ones for every "
-              "repetition; not if they are more than the cores, or of a device");
+              "bind each thread of a case to its own core, choosing the least busy cores for every "
+              "repetition; no effect with more threads than cores, or on a device");
   CLI::Option* hard_limit =
       addPositive(app, "--hard-limit", "SECONDS", hosts.hard_limit_seconds,
-                  "limit on a single call into an algorithm: its process is then ended");
+                  "limit on a single call into an algorithm, after which its process is killed");
   CLI::Option* memory_limit = addValue(
       app, "--memory-limit", "GIB",
       [&](const std::string& text) {
         hosts.memory_limit_gib = parseNumber(text, "--memory-limit", 0, true);
       },
       [&] { return hosts.memory_limit_gib ? fmt::format("{}", *hosts.memory_limit_gib) : ""; },
-      "memory that a case may hold, in GiB (default: as much as the machine has)");
+      "maximum memory of a case, in GiB (default: the machine's memory)");
   return {in_process, pin->excludes(in_process), hard_limit->excludes(in_process),
           memory_limit->excludes(in_process)};
 }
@@ -330,7 +330,7 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) 
           [&](const std::vector<std::string>& texts) {
             options.objects = parseObjectCounts(texts);
           },
-          [&] { return joined(options.objects); }, "numbers of bodies, e.g. 1000,8000,32000"),
+          [&] { return joined(options.objects); }, "number of bodies, e.g. 1000,8000,32000"),
       addList(
           app, "--object-type", "TYPE[,TYPE...]",
           [&](const std::vector<std::string>& names) { options.object_types = names; },

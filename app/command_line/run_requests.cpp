@@ -15,7 +15,7 @@
 namespace broadmark {
 namespace {
 
-/// "--order-seed" as "order_seed", "source" as it is.
+/// Converts "--order-seed" to "order_seed"; returns "source" unchanged.
 std::string keyOf(std::string key) {
   key.erase(0, key.find_first_not_of('-'));
   std::ranges::replace(key, '-', '_');
@@ -24,24 +24,24 @@ std::string keyOf(std::string key) {
 
 std::string keyOf(const CLI::Option& option) { return keyOf(option.get_name()); }
 
-/// "order_seed" as "--order-seed".
+/// Converts "order_seed" to "--order-seed".
 std::string optionOf(std::string key) {
   std::ranges::replace(key, '_', '-');
   return "--" + key;
 }
 
-/// Whether each of several values is given by the option once more, as they may hold commas.
+/// Whether several values are given by repeating the option, as they may contain commas.
 bool isRepeated(const std::string& key) {
   return key == "source" || key == "plugin" || key == "param";
 }
 
-/// A number where that is written as the text is.
+/// Returns a number if it is formatted like the text, else the text.
 Json valueOf(const std::string& text) {
   Json number = jsonOrNull(text);
   return number.is_number() && number.dump() == text ? number : Json(text);
 }
 
-/// The value of an option, of which `text` has one line for each time that it is given.
+/// Parses the value of an option; `text` has one line per repetition of the option.
 Json valueOf(const CLI::Option& option, const std::string& text) {
   if (option.get_items_expected_max() == 0) return true;
   if (option.get_items_expected_max() == 1) return valueOf(text);
@@ -63,12 +63,12 @@ Json valueOf(const CLI::Option& option, const std::string& text) {
   return values;
 }
 
-/// As the command line has it: an array's elements between commas.
+/// Formats a value for the command line: an array as its elements, separated by commas.
 std::string textOf(const Json& value, const std::string& path) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number() || value.is_boolean()) return value.dump();
   if (!value.is_array()) {
-    throw InputError(path + ": a text, a number or an array of these is expected");
+    throw InputError(path + ": a string, a number or an array of these is expected");
   }
   std::vector<std::string> parts;
   for (const Json& element : value) {
@@ -78,7 +78,7 @@ std::string textOf(const Json& value, const std::string& path) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-/// The values of an option that is given once for each.
+/// Returns the texts of an option's value, one per repetition of the option.
 std::vector<std::string> textsOf(const std::string& key, const Json& value,
                                  const std::string& path) {
   std::vector<std::string> texts;
@@ -103,10 +103,10 @@ std::string formatRunRequest(const RunRequest& request) {
   session.set(request);
   Json json = {{"schema", kRunSchema}};
   for (CLI::Option* option : app.get_options()) {
-    if (!session.isOfRequest(*option)) continue;
-    const std::string by_default = option->get_default_str();
+    if (!session.isRequestOption(*option)) continue;
+    const std::string default_text = option->get_default_str();
     const std::string text = option->capture_default_str()->get_default_str();
-    if (text != by_default) json[keyOf(*option)] = valueOf(*option, text);
+    if (text != default_text) json[keyOf(*option)] = valueOf(*option, text);
   }
   return formatJson(json);
 }
@@ -122,7 +122,7 @@ std::vector<std::string> argumentsOf(std::string_view text, const std::string& n
   std::vector<const CLI::Option*> options;
   std::vector<std::string> keys;
   for (const CLI::Option* option : app.get_options()) {
-    if (!session.isOfRequest(*option)) continue;
+    if (!session.isRequestOption(*option)) continue;
     options.push_back(option);
     keys.push_back(keyOf(*option));
   }
@@ -142,7 +142,7 @@ std::vector<std::string> argumentsOf(std::string_view text, const std::string& n
       continue;
     }
     for (std::string& argument : textsOf(key, value, path)) {
-      // In one word, so that a value may begin with a dash.
+      // As a single word, so that a value may start with a dash.
       arguments.push_back(option.get_positional()
                               ? std::move(argument)
                               : fmt::format("{}={}", option.get_name(), argument));

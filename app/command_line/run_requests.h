@@ -1,5 +1,5 @@
-// Run requests as JSON ("schema": "broadmark-run/1", docs/run-requests.md): an object of
-// the main command's options and their values, so that options are declared once.
+// Run requests as JSON ("schema": "broadmark-run/1", docs/run-requests.md): an object with the main
+// command's options and their values, so that options are declared only once.
 #pragma once
 
 #include <string>
@@ -18,12 +18,12 @@ class SessionParser;
 
 inline constexpr std::string_view kRunSchema = "broadmark-run/1";
 
-/// Only what is not as by default.
+/// Formats a request; omits options that have their defaults.
 std::string formatRunRequest(const RunRequest&);
 
-/// The request as arguments of the main command, without the options that `app` has been given
-/// already. `name` stands for the file in messages. Throws InputError for a text that is no
-/// request, or has a key that no request has.
+/// Converts a request to arguments of the main command, without options that `app` has already
+/// parsed. `name` is the file's name in messages. Throws InputError for a text that is not a
+/// request or has an unknown key.
 std::vector<std::string> argumentsOf(std::string_view text, const std::string& name,
                                      const CLI::App& app, const SessionParser& session);
 

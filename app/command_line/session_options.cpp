@@ -1,4 +1,4 @@
-// The main command's options. Each states once, where it is added, what it cannot be combined with.
+// The main command's options, each added together with its conflicts.
 
 #include "command_line/session_options.h"
 
@@ -19,12 +19,12 @@ namespace {
 /// What an option cannot be combined with.
 enum Conflict : unsigned {
   kNone = 0,
-  kCase = 1,         ///< --case: a case of a results file states it already
-  kExport = 2,       ///< --export-case: it writes one recording and nothing else
-  kInspector = 4,    ///< the inspector: only a run without it uses the option
-  kWindow = 8,       ///< a window: only pictures drawn off-screen use the option
-  kRequest = 16,     ///< a file of a run request: the option is of a call of the program
-  kFixedCount = 32,  ///< --repetitions N: only --repetitions auto uses the option
+  kCase = 1,         ///< --case: the results file already states the option's value
+  kExport = 2,       ///< --export-case: writes one recording and nothing else
+  kInspector = 4,    ///< the inspector: the option affects only runs without it
+  kWindow = 8,       ///< a window: the option affects only off-screen pictures
+  kRequest = 16,     ///< a run request file: the option applies to a single invocation
+  kFixedCount = 32,  ///< --repetitions N: the option affects only --repetitions auto
 };
 
 Shard parseShard(const std::string& text) {
@@ -39,7 +39,7 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-/// By size.
+/// Returns the thread counts in ascending order.
 std::vector<int> parseThreads(const std::vector<std::string>& texts) {
   std::vector<int> threads;
   for (const std::string& text : texts) threads.push_back(parseThreadCount(text));
@@ -68,7 +68,7 @@ std::string isaNames(const std::vector<Isa>& isas) {
 }  // namespace
 
 SessionParser::SessionParser(CLI::App& app) : app_(app) {
-  addCall();
+  addInvocation();
   addCases();
   addRun();
   addOutput();
@@ -81,7 +81,7 @@ void SessionParser::tag(const CLI::Option* option, unsigned conflicts) {
   tagged_.emplace_back(option, conflicts);
 }
 
-void SessionParser::addCall() {
+void SessionParser::addInvocation() {
   tag(app_.add_option("source", options_.sources,
                       fmt::format("what to open: {}", sourceKindsText()))
           ->type_name("SOURCE")
@@ -90,19 +90,18 @@ void SessionParser::addCall() {
       kNone);
   tag(app_.add_flag("--headless", options_.headless, "run without a window"), kRequest);
   CLI::Option* ui = app_.add_flag("--ui", options_.ui,
-                                  "with --headless: the inspector drawn off-screen (--screenshot)");
-  CLI::Option* script =
-      addPath(app_, "--script", "FILE", options_.script,
-              "what a user does in the inspector, line by line (see docs/inspector.md)");
+                                  "with --headless: draw the inspector off-screen (--screenshot)");
+  CLI::Option* script = addPath(app_, "--script", "FILE", options_.script,
+                                "script of user actions in the inspector (see docs/inspector.md)");
   tag(ui, kRequest);
   tag(script, kRequest);
-  showWith(parts::kInspector, {ui, script});
+  hideWithout(parts::kInspector, {ui, script});
   tag(addPath(app_, "--request", "FILE", options_.request_file,
-              "take the options of this run request, too (JSON, see docs/run-requests.md; '-': "
-              "standard input); those given beside it win"),
+              "also use the options of this run request (JSON, see docs/run-requests.md; '-': "
+              "standard input); command line options override them"),
       kRequest);
   tag(addPath(app_, "--write-request", "FILE", options_.written_request,
-              "write the run request ('-': to standard output), run nothing"),
+              "write the run request ('-': to standard output) and run nothing"),
       kRequest | kExport | kInspector);
 }
 
@@ -112,8 +111,8 @@ void SessionParser::addCases() {
   tag(addList(
           app_, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
           [&] { return fmt::format("{}", fmt::join(cases.algorithms, ",")); },
-          "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
-          "only by name)"),
+          "algorithms: ids, families, patterns such as 'sap*', or all (default; self-checks must "
+          "be named)"),
       kCase);
   tag(addPlugins(app_, options_.plugins), kNone);
   tag(addList(
@@ -136,9 +135,9 @@ void SessionParser::addCases() {
           app_, "--shard", "I/N",
           [&](const std::string& text) { options_.shard = parseShard(text); },
           [&] { return fmt::format("{}/{}", options_.shard.index, options_.shard.count); },
-          "run only every N-th case, from the I-th (from 0)"),
+          "run only every N-th case, starting with case I (counted from 0)"),
       kCase | kInspector);
-  tag(app_.add_flag("--list", options_.list_only, "print the cases, run nothing"),
+  tag(app_.add_flag("--list", options_.list_only, "print the cases and run nothing"),
       kExport | kInspector | kRequest);
 }
 
@@ -148,39 +147,41 @@ void SessionParser::addRun() {
   RepetitionOptions& repetitions = options_.repetitions;
   const auto set_repetitions = [&](const std::string& text) {
     repetitions.until_precise = text == "auto";
-    repetitions.most = repetitions.until_precise
-                           ? RepetitionOptions::kMaxUntilPrecise
-                           : static_cast<int>(parseInteger(text, "--repetitions", 1, kMaxPasses));
+    repetitions.max_count =
+        repetitions.until_precise
+            ? RepetitionOptions::kMaxUntilPrecise
+            : static_cast<int>(parseInteger(text, "--repetitions", 1, kMaxPasses));
   };
   tag(addValue(
           app_, "--repetitions", "R|auto", set_repetitions,
-          [&] { return repetitions.until_precise ? "auto" : fmt::format("{}", repetitions.most); },
+          [&] {
+            return repetitions.until_precise ? "auto" : fmt::format("{}", repetitions.max_count);
+          },
           fmt::format("measured repetitions of each case; auto: from {} to {}, until its mean "
-                      "is known precisely",
+                      "is precise (see --precision)",
                       RepetitionOptions::kMinUntilPrecise, RepetitionOptions::kMaxUntilPrecise)),
       kInspector);
   tag(addShare(app_, "--precision", repetitions.precision, true,
-               "of --repetitions auto: width of the mean's 95 % interval over the "
-               "repetitions"),
+               "for --repetitions auto: relative width of the mean's 95 % interval"),
       kInspector | kFixedCount);
   tag(addPositive(
           app_, "--max-seconds", "S", repetitions.max_seconds,
-          fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
+          fmt::format("for --repetitions auto: time per recording, after which no case is repeated "
                       "more than {} times",
                       RepetitionOptions::kMinUntilPrecise)),
       kInspector | kFixedCount);
   tag(addInteger(app_, "--order-seed", "S", repetitions.order_seed, 0,
                  std::numeric_limits<long long>::max(),
-                 "seed of the interleaving order of cases; each repetition has another order"),
+                 "seed of the interleaving order of cases, which differs in each repetition"),
       kInspector);
   tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMaxPasses,
-                 "unmeasured repetitions before them"),
+                 "unmeasured repetitions before the measured ones"),
       kInspector);
   tag(addPositive(app_, "--time-limit", "SECONDS", policy.frame_limit_seconds,
                   "limit on the mean seconds per frame (the paper's cap)"),
       kInspector);
   tag(addFlag(app_, "--allow-timeout", options_.allow_timeout,
-              "cases that cross a time limit do not make the run fail"),
+              "do not fail if cases exceed a time limit"),
       kInspector);
   tag(addNamed(app_, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
@@ -194,7 +195,7 @@ void SessionParser::addOutput() {
     tag(option, kExport | kInspector);
   }
   tag(addPath(app_, "--record", "DIR", options_.record,
-              "keep the simulated recordings in this directory"),
+              "write the simulated recordings to this directory"),
       kExport | kInspector);
   tag(addRecorders(app_, options_.scene.recorders), kInspector);
 }
@@ -203,20 +204,20 @@ void SessionParser::addPictures() {
   constexpr long long kMaxFrame = std::numeric_limits<std::int32_t>::max();
   CLI::Option* screenshot =
       addPath(app_, "--screenshot", "FILE", options_.screenshot,
-              "draw a frame of each recording off-screen; with several recordings their names "
-              "are added to the file's");
+              "draw a frame of each recording off-screen; with several recordings, their names "
+              "are appended to the file name");
   tag(screenshot, kExport | kWindow);
   const auto set_frame = [this](const std::string& text) {
     options_.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMaxFrame));
   };
   std::string frame_help = "frame of the screenshot, 0 being the initial pose (default: the last)";
-  if (parts::kInspector.included) frame_help += "; of the inspector: where it opens";
+  if (parts::kInspector.included) frame_help += "; in the inspector: the first frame shown";
   const auto get_frame = [this] {
     return options_.frame ? fmt::format("{}", *options_.frame) : std::string();
   };
   CLI::Option* frame = addValue(app_, "--frame", "K", set_frame, get_frame, frame_help);
   tag(frame, kNone);
-  showWith(parts::kRenderer, {screenshot, frame});
+  hideWithout(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app_, options_.picture)) {
     tag(option, kWindow);
   }
@@ -232,8 +233,8 @@ void SessionParser::addCaseOfResults() {
   CLI::Option* id = addText(app_, "--case", "ID", options_.case_id,
                             "run only this case of the results file that is the source");
   tag(addPath(app_, "--export-case", "FILE", options_.export_case,
-              "instead of running it, find the smallest recording on which that case still gives "
-              "a wrong answer, write it, and print the command that shows it")
+              "instead of running the case, write the smallest recording on which it still gives "
+              "a wrong answer, and print a command that reproduces it")
           ->needs(id),
       kInspector | kRequest);
 }
@@ -245,7 +246,7 @@ void SessionParser::requireNoConflict() const {
     const char* why;
   };
   const Rule rules[] = {
-      {!options_.case_id.empty(), kCase, "cannot be combined with --case, which states it"},
+      {!options_.case_id.empty(), kCase, "cannot be combined with --case, which already sets it"},
       {!options_.export_case.empty(), kExport, "cannot be combined with --export-case"},
       {options_.ui, kInspector, "only for runs without the inspector: leave out --ui"},
       {!options_.headless, kInspector, "only for runs without the inspector: add --headless"},
@@ -260,7 +261,7 @@ void SessionParser::requireNoConflict() const {
   }
 }
 
-bool SessionParser::isOfRequest(const CLI::Option& option) const {
+bool SessionParser::isRequestOption(const CLI::Option& option) const {
   return std::ranges::any_of(tagged_, [&](const auto& tagged) {
     return tagged.first == &option && (tagged.second & kRequest) == 0;
   });
@@ -270,7 +271,7 @@ SessionOptions SessionParser::options() const {
   requireNoConflict();
   SessionOptions options = options_;
   if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
-    throw InputError(fmt::format("--screenshot: '{}': pictures are PNG files: name one .png",
+    throw InputError(fmt::format("--screenshot: '{}': pictures are PNG files: end the name in .png",
                                  options.screenshot.string()));
   }
   if (!options.case_id.empty() && options.sources.size() != 1) {

@@ -1,4 +1,4 @@
-// The options of the main command: a run request, and what is to be done with it.
+// Options of the main command.
 #pragma once
 
 #include <filesystem>
@@ -14,47 +14,47 @@ class Option;
 
 namespace broadmark {
 
-/// A run request, and what is to be done with it.
+/// A run request, and what to do with it.
 struct SessionOptions : RunRequest {
-  std::filesystem::path export_case;   ///< where its smallest failing recording goes; "": nowhere
-  std::filesystem::path request_file;  ///< source of further options; "": none
-  std::filesystem::path written_request;  ///< where the request goes, which is not run; "": nowhere
+  std::filesystem::path export_case;      ///< output for the smallest failing recording; "": none
+  std::filesystem::path request_file;     ///< request with further options; "": none
+  std::filesystem::path written_request;  ///< output for the request, instead of a run; "": none
   bool list_only = false;
   bool quiet = false;
   bool headless = false;
-  bool ui = false;               ///< the inspector, without a window
-  std::filesystem::path script;  ///< of the inspector; "": none
+  bool ui = false;               ///< run the inspector without a window
+  std::filesystem::path script;  ///< script for the inspector; "": none
 
   [[nodiscard]] bool inspector() const { return !headless || ui; }
 };
 
-/// The options of the main command as CLI11 has them.
+/// Parses the options of the main command with CLI11.
 class SessionParser {
  public:
-  /// Adds them to `app`, which is destroyed first.
+  /// Adds the options to `app`, which must be destroyed before this.
   explicit SessionParser(CLI::App& app);
   SessionParser(const SessionParser&) = delete;
   SessionParser& operator=(const SessionParser&) = delete;
 
-  /// What `app` has parsed, not yet checked.
+  /// Options parsed by `app`, not yet validated.
   [[nodiscard]] const SessionOptions& parsed() const { return options_; }
-  /// Gives the options the values of a request, as if they had been parsed.
+  /// Sets the options to the values of a request, as if they had been parsed.
   void set(const RunRequest& request) { static_cast<RunRequest&>(options_) = request; }
-  /// Whether a run request has this option.
-  [[nodiscard]] bool isOfRequest(const CLI::Option& option) const;
-  /// The options, after `app` has parsed a command line. Throws InputError for options that cannot
-  /// be combined.
+  /// Whether the option is part of run requests.
+  [[nodiscard]] bool isRequestOption(const CLI::Option& option) const;
+  /// Returns the options after `app` has parsed a command line. Throws InputError for conflicting
+  /// options.
   [[nodiscard]] SessionOptions options() const;
 
  private:
-  void addCall();
+  void addInvocation();
   void addCases();
   void addRun();
   void addOutput();
   void addPictures();
   void addScene();
   void addCaseOfResults();
-  /// States what an option cannot be combined with.
+  /// Stores the conflicts of an option.
   void tag(const CLI::Option* option, unsigned conflicts);
   void requireNoConflict() const;
 

@@ -1,5 +1,3 @@
-// CLI11's options as plain values.
-
 #include "command_line/usage.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What the command line takes, read from the options themselves: for shells and for the manual.
+// Queries about CLI11's options, for shell completion and the manual.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@ class Option;
 
 namespace broadmark {
 
-/// Whether help shows an option: CLI11's own way to hide one takes its name away, which complaints
-/// need.
+/// Whether help shows an option. CLI11's own way to hide an option removes its name, which error
+/// messages need.
 bool isShown(const CLI::Option&);
 
-/// With dashes; of an argument without a name: what it is.
+/// Names of an option with dashes; of a positional argument its type.
 std::vector<std::string> namesOf(const CLI::Option&);
 bool takesValue(const CLI::Option&);
 
-/// Of a command, those that help shows.
+/// Options of a command that help shows.
 std::vector<const CLI::Option*> shownOptions(const CLI::App&);
 
-/// The commands besides the main one.
+/// All commands except the main one.
 std::vector<const CLI::App*> commandsOf(const CLI::App& main);
 
 }  // namespace broadmark

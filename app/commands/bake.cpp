@@ -1,7 +1,7 @@
-// broadmark bake: every combination of scenes, object types and object counts as a recording.
+// broadmark bake: records every combination of scenes, object types and object counts.
 //
-// Recordings that are there, complete and made with the same parameters, are kept: an interrupted
-// batch continues where it was.
+// Existing complete recordings with the same parameters are kept, so that an interrupted batch can
+// be resumed.
 
 #include <fmt/format.h>
 
@@ -35,17 +35,17 @@ struct Options {
 };
 
 Interrupted interruption() {
-  return Interrupted("finished recordings are kept; the same call continues");
+  return Interrupted("finished recordings are kept; rerun the same command to resume");
 }
 
-/// The plan, with progress. Throws Interrupted.
+/// Makes the plan and shows progress. Throws Interrupted.
 BakePlan makeBakePlan(const Options& options) {
-  std::optional<Progress> shown;  // only when there is something to check
+  std::optional<Progress> progress;  // only if there is something to check
   auto plan =
       planBake(options.bake, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
-        if (!shown) shown.emplace("checking existing recordings", total, options.quiet);
-        shown->detail(path.string());
-        return shown->goOn(number);
+        if (!progress) progress.emplace("checking existing recordings", total, options.quiet);
+        progress->detail(path.string());
+        return progress->advance(number);
       });
   if (!plan) throw interruption();
   return std::move(*plan);
@@ -57,7 +57,7 @@ int listPlan(const BakePlan& plan) {
   };
   for (const fs::path& path : plan.kept) print("kept ", fs::file_size(path), path);
   for (const BakeJob& job : plan.pending) {
-    for (const fs::path& path : job.paths) print("bake ", leastBytes(path, job.scene), path);
+    for (const fs::path& path : job.paths) print("bake ", minBytes(path, job.scene), path);
   }
   const bool exact =
       std::ranges::all_of(plan.pending, [](const BakeJob& job) { return fitsAabbs(job.scene); });
@@ -67,7 +67,7 @@ int listPlan(const BakePlan& plan) {
   return 0;
 }
 
-/// How many recordings ended how.
+/// Numbers of recordings by outcome.
 struct Tally {
   std::size_t kept = 0;
   std::size_t baked = 0;
@@ -83,31 +83,31 @@ struct Tally {
   }
 };
 
-/// Bakes what is pending and prints each recording as it ends. Returns those that are whole.
-std::vector<fs::path> performPlan(BakePlan plan, const Options& options, Tally& tally) {
-  std::vector<fs::path> whole = plan.kept;
-  for (const fs::path& path : whole) fmt::print("kept   {}\n", path.string());
+/// Bakes the pending recordings and prints each one when finished. Returns the complete ones.
+std::vector<fs::path> executePlan(BakePlan plan, const Options& options, Tally& tally) {
+  std::vector<fs::path> complete = plan.kept;
+  for (const fs::path& path : complete) fmt::print("kept   {}\n", path.string());
   std::fflush(stdout);
   tally.kept = plan.kept.size();
   tally.unfinished = plan.recordings();
-  if (plan.pending.empty()) return whole;
+  if (plan.pending.empty()) return complete;
 
   std::uint64_t work = 0;
   for (const BakeJob& job : plan.pending) work += job.work();
   Progress progress(fmt::format("baking {}", counted(tally.unfinished, "recording")), work,
                     options.quiet);
-  const auto on_end = [&](const BakedJob& job) {
+  const auto on_finished = [&](const BakedJob& job) {
     tally.unfinished -= job.paths.size();
     if (!job.failure.empty()) {
       tally.failed += job.paths.size();
-      progress.complain("broadmark: " + job.failure);
+      progress.printError("broadmark: " + job.failure);
       return;
     }
     for (const fs::path& path : job.paths) {
       ++tally.baked;
       tally.bytes += fs::file_size(path);
       progress.print("baked  " + path.string());
-      whole.push_back(path);
+      complete.push_back(path);
     }
   };
   const auto on_progress = [&](const BatchState& state) {
@@ -115,29 +115,30 @@ std::vector<fs::path> performPlan(BakePlan plan, const Options& options, Tally& 
     progress.update(state.done, state.seconds_left);
     return true;
   };
-  bakeAll(std::move(plan.pending), options.bake.threads, on_end, on_progress);
-  return whole;
+  bakeAll(std::move(plan.pending), options.bake.threads, on_finished, on_progress);
+  return complete;
 }
 
 int run(const Options& options) {
   if (!options.movie.directory.empty()) requirePart(parts::kRenderer, "--movie");
   addEnginesOf(options.bake.plugins);
   const InterruptGuard guard;
-  const auto begin = std::chrono::steady_clock::now();
+  const auto start = std::chrono::steady_clock::now();
   BakePlan plan = makeBakePlan(options);
   if (options.list_only) return listPlan(plan);
   prepare(plan, options.bake.record);
-  std::unique_ptr<OffscreenContext> drawing;
-  if (!options.movie.directory.empty()) drawing = prepareMovies(options.movie);
+  std::unique_ptr<OffscreenContext> context;
+  if (!options.movie.directory.empty()) context = prepareMovies(options.movie);
   Tally tally;
-  const std::vector<fs::path> whole = performPlan(std::move(plan), options, tally);
-  tally.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  const std::vector<fs::path> complete = executePlan(std::move(plan), options, tally);
+  tally.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (InterruptGuard::requested()) throw interruption();
-  if (drawing && !makeMovies(*drawing, options.movie, whole, options.quiet)) throw interruption();
-  return tally.failed == 0 ? exit_status::fine : exit_status::bad_input;
+  if (context && !makeMovies(*context, options.movie, complete, options.quiet))
+    throw interruption();
+  return tally.failed == 0 ? exit_status::success : exit_status::bad_input;
 }
 
-/// The scenes, built-in or in files.
+/// Adds the options for scenes, built-in or in files.
 void addScenes(CLI::App& app, Options& options) {
   const auto append = [&](const std::vector<std::string>& names) {
     auto& scenes = options.bake.sources;
@@ -146,8 +147,9 @@ void addScenes(CLI::App& app, Options& options) {
   addList(app, "--scenes", "A[,B...]", append, {}, "built-in scenes (default: all)");
   app.add_option_function<std::vector<std::string>>(
          "--parameters", append,
-         "bake the scene that this file of scene parameters, the .json beside a recording, or an "
-         "authored scene (.json) describes; other options override it (repeatable)")
+         "bake the scene described by this file: scene parameters, the .json beside a recording, "
+         "or "
+         "an authored scene (.json); other options override it (repeatable)")
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
@@ -156,11 +158,11 @@ void addMovie(CLI::App& app, MovieOptions& movie) {
   constexpr long long kMaxEvery = 1'000'000;
   CLI::Option* directory =
       addPath(app, "--movie", "DIR", movie.directory,
-              "draw each recording into numbered pictures, in a folder of its name in this "
+              "draw each recording as numbered pictures, in a folder with its name in this "
               "directory");
   CLI::Option* every = addInteger(app, "--movie-every", "K", movie.every, 1, kMaxEvery,
-                                  "frames from one picture to the next");
-  showWith(parts::kRenderer, {directory, every->needs(directory)});
+                                  "frames between successive pictures");
+  hideWithout(parts::kRenderer, {directory, every->needs(directory)});
   for (CLI::Option* option : addPictureOptions(app, movie.picture)) option->needs(directory);
 }
 
@@ -173,19 +175,19 @@ std::function<int()> add(CLI::App& app) {
   addRecorders(app, bake.scene.recorders);
   addParameters(app, bake.parameters);
   addPath(app, "--output", "DIR", bake.record,
-          "directory for the recordings; they go into folders of their kind in it, such as "
+          "directory for the recordings, with subfolders for each kind, such as "
           "Recordings_AABBs/")
       ->required();
   bake.threads = allCores();
   addValue(
       app, "--threads", "T",
       [&bake](const std::string& text) { bake.threads = parseThreadCount(text); }, {},
-      "recordings baked at the same time (default: all cores); they do not depend on it");
+      "recordings baked at the same time (default: all cores); does not affect their content");
   addMovie(app, options->movie);
   app.add_flag("--list", options->list_only,
                "print what would be baked or kept, with sizes; bake nothing");
   app.add_flag("--force", bake.force,
-               "bake again what is already there (default: complete recordings are kept)");
+               "bake existing recordings again (default: complete recordings are kept)");
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }

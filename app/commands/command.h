@@ -1,5 +1,5 @@
-// The commands besides the main one. A new command is one file in this folder and one line in the
-// list in CMakeLists.txt.
+// Commands other than the main one. A command is one file in this folder and one line in the list
+// in CMakeLists.txt.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@ namespace broadmark {
 struct Command {
   std::string name;
   std::string summary;
-  /// Adds its options to `app`. Returns what runs it once `app`, which lives as long, has parsed a
-  /// command line, and returns the exit status; that throws InputError.
+  /// Adds the options to `app`, which must outlive the returned function. That function runs the
+  /// command once `app` has parsed a command line, and returns the exit status. Throws InputError.
   std::function<int()> (*add)(CLI::App& app);
 };
 

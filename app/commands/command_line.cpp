@@ -1,4 +1,4 @@
-// The main command with the others as its subcommands, and complaints about bad usage.
+// The main command with the others as subcommands, and error messages for bad usage.
 
 #include "commands/command_line.h"
 
@@ -42,7 +42,7 @@ namespace broadmark {
 namespace {
 
 constexpr const char* kWithoutHeadless =
-    "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.";
+    "\nWithout --headless or a command, the inspector opens, with SOURCE if one is given.";
 constexpr const char* kFooter =
     "\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
     "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
@@ -70,8 +70,8 @@ class HelpFormatter final : public CLI::Formatter {
   }
 };
 
-/// An argument that `app` does not know, with the nearest of its options.
-std::string unexpected(const CLI::App& app, const std::string& argument) {
+/// Error message for an argument that `app` does not accept; suggests the nearest option.
+std::string unexpectedText(const CLI::App& app, const std::string& argument) {
   if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
   std::vector<std::string> known;
   for (const CLI::Option* option : shownOptions(app)) known.push_back(option->get_name());
@@ -81,13 +81,13 @@ std::string unexpected(const CLI::App& app, const std::string& argument) {
                      nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
-/// CLI11's complaint as one line.
+/// CLI11's error message on a single line.
 InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
   const auto chosen = main.get_subcommands();
   const CLI::App& app = chosen.empty() ? main : *chosen.front();
   std::string message = error.what();
   std::ranges::replace(message, '\n', ' ');
-  if (!app.remaining().empty()) message = unexpected(app, app.remaining().front());
+  if (!app.remaining().empty()) message = unexpectedText(app, app.remaining().front());
   const std::string name = chosen.empty() ? "" : app.get_name();
   return InputError(fmt::format("{}{} (see 'broadmark {}--help')", name.empty() ? "" : name + ": ",
                                 message, name.empty() ? "" : name + " "));
@@ -108,10 +108,10 @@ class CommandLine {
     }
   }
 
-  /// The help that is asked for; nothing if there is anything to run.
+  /// Parses a command line. Returns the requested help; nothing if there is a command to run.
   std::optional<std::string> parse(std::vector<std::string> arguments) {
     arguments = withCurrentOptions(std::move(arguments));
-    std::ranges::reverse(arguments);  // as CLI11 takes them
+    std::ranges::reverse(arguments);  // the order that CLI11 expects
     try {
       app_.parse(std::move(arguments));
     } catch (const CLI::Success& success) {
@@ -125,7 +125,7 @@ class CommandLine {
     return {};
   }
 
-  /// What runs the command that was parsed; nothing for the main command.
+  /// Returns the function that runs the parsed command; nothing for the main command.
   [[nodiscard]] std::function<int()> command() const {
     for (const auto& [app, run] : commands_) {
       if (app->parsed()) return run;
@@ -138,7 +138,7 @@ class CommandLine {
     return session_.options();
   }
 
-  /// The arguments with those of the run request that they name; nothing if they name none.
+  /// Returns the arguments together with those of their run request; nothing without a run request.
   [[nodiscard]] std::optional<std::vector<std::string>> withRequest(
       const std::vector<std::string>& given) const {
     const std::filesystem::path& file = session_.parsed().request_file;
@@ -149,7 +149,7 @@ class CommandLine {
   }
 
  private:
-  /// Options before a command would have no effect on it.
+  /// Throws InputError for options before a command, which would have no effect.
   void requireNothingBeforeCommand() const {
     const auto chosen = app_.get_subcommands();
     if (chosen.empty()) return;
@@ -161,7 +161,7 @@ class CommandLine {
     }
   }
 
-  /// A first argument that is not a source may be a misspelt command.
+  /// Throws InputError if the first argument is not a source but resembles a command.
   void requireNoMisspeltCommand(const std::vector<std::string>& sources) const {
     if (sources.empty() || isSource(sources.front())) return;
     std::vector<std::string> names;
@@ -177,22 +177,22 @@ class CommandLine {
   std::vector<std::pair<const CLI::App*, std::function<int()>>> commands_;
 };
 
-/// What a command line of the main command asks for, with the run request that it may name.
+/// Options of a command line of the main command, together with those of its run request.
 SessionOptions sessionOf(const CommandLine& line, const std::vector<std::string>& arguments) {
-  const auto whole = line.withRequest(arguments);
+  const auto all = line.withRequest(arguments);
   CommandLine with_request;
-  if (whole) with_request.parse(*whole);
-  SessionOptions options = (whole ? with_request : line).session();
-  options.command_line = whole.value_or(arguments);
+  if (all) with_request.parse(*all);
+  SessionOptions options = (all ? with_request : line).session();
+  options.command_line = all.value_or(arguments);
   return options;
 }
 
 int listCases(const Plan& plan) {
   for (const std::string& id : caseIds(plan)) fmt::print("{}\n", id);
-  return exit_status::fine;
+  return exit_status::success;
 }
 
-/// Throws InputError if the options need what has been left out of this build.
+/// Throws InputError if this build lacks a part that the options need.
 void requireParts(const SessionOptions& options) {
   if (!options.screenshot.empty()) requirePart(parts::kRenderer, "--screenshot");
   if (!options.cases.device.empty()) requirePart(parts::kOpenCl, "--device");
@@ -205,7 +205,7 @@ int runSession(const SessionOptions& options) {
   Plan plan = makePlan(options, options.inspector() ? PlanUse::open : PlanUse::run);
   if (!options.written_request.empty()) {
     writeOutput(options.written_request, formatRunRequest(options));
-    return exit_status::fine;
+    return exit_status::success;
   }
   if (options.list_only) return listCases(plan);
   requireParts(options);

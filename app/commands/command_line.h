@@ -1,4 +1,4 @@
-// The command line as a whole.
+// Parsing of the complete command line.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace broadmark {
 
-/// Parses a command line, without the program's name, completely. Returns what runs it (or prints
-/// the help it asks for) and returns the exit status; that throws InputError. Throws InputError for
-/// bad usage.
+/// Parses a complete command line, without the program's name. Returns a function that runs it (or
+/// prints the requested help) and returns the exit status, and that may throw InputError. Throws
+/// InputError for bad usage.
 std::function<int()> parseCommandLine(const std::vector<std::string>& arguments);
 
-/// The options on a command line of the main command. Throws InputError for bad usage.
+/// Parses the options of a command line of the main command. Throws InputError for bad usage.
 SessionOptions parseSession(const std::vector<std::string>& arguments);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// broadmark compare: result files, case by case.
+// broadmark compare: compares result files, case by case.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   fs::path before;
-  std::vector<std::string> baselines;  ///< more runs like `before`
+  std::vector<std::string> baselines;  ///< additional runs like `before`
   std::vector<fs::path> after;
   ComparisonOptions comparison;
   ResultPaths outputs;
@@ -31,7 +31,7 @@ NamedResults readResults(const fs::path& path) {
   return {path.string(), parseResults(readTextFile(path), path.string())};
 }
 
-/// Only with --by a run is compared with itself.
+/// The files to judge. A run is compared with itself only with --by.
 std::vector<fs::path> judgedFiles(const Options& options) {
   if (!options.after.empty()) return options.after;
   if (!options.comparison.by.empty()) return {options.before};
@@ -45,10 +45,9 @@ void write(const Options& options, const Comparison& comparison) {
   }
 }
 
-/// A wrong answer for one that has become wrong, a regression for anything else that speaks against
-/// B.
+/// Returns wrong_answer if a correct case has become wrong, regression for any other failing case.
 int statusOf(const Comparison& comparison) {
-  int status = exit_status::fine;
+  int status = exit_status::success;
   for (const CaseComparison& compared : comparison.cases) {
     if (!comparison.fails(compared)) continue;
     const bool wrong =
@@ -63,25 +62,25 @@ int statusOf(const Comparison& comparison) {
 int run(const Options& options) {
   const std::vector<fs::path> judged = judgedFiles(options);
   if (judged.size() > 1 && !options.outputs.empty()) {
-    throw InputError("compare: a file can be written for one judged run: name only one");
+    throw InputError("compare: output files need a single B");
   }
   std::vector<NamedResults> before = {readResults(options.before)};
   for (const std::string& path : options.baselines) before.push_back(readResults(path));
   const bool prints_output = std::ranges::any_of(
       options.outputs, [](const auto& output) { return isStandardOutput(output.second); });
-  int status = exit_status::fine;
+  int status = exit_status::success;
   for (const fs::path& path : judged) {
     const Comparison comparison = compareResults(before, readResults(path), options.comparison);
     if (judged.size() > 1) fmt::print("B = {}\n", path.string());
     if (!prints_output) fmt::print("{}", formatComparison(comparison));
-    // A comparison of nothing must not look like one that passed.
+    // An empty comparison must not look like a success.
     if (!comparison.comparable()) {
-      throw InputError(fmt::format("{} and {}: no case of both can be compared",
+      throw InputError(fmt::format("{} and {}: have no comparable cases in common",
                                    options.before.string(), path.string()));
     }
     write(options, comparison);
     const int found = statusOf(comparison);
-    if (status != exit_status::wrong_answer && found != exit_status::fine) status = found;
+    if (status != exit_status::wrong_answer && found != exit_status::success) status = found;
   }
   return status;
 }
@@ -93,21 +92,21 @@ std::function<int()> add(CLI::App& app) {
   app.add_option("B", options->after, "results to judge")->type_name("B");
   addRepeatable(
       app, "--baseline", "FILE", options->baselines,
-      "another run like A (repeatable); where there are fewer than four cases, three or more "
-      "tell how much runs differ");
+      "another run like A (repeatable); with fewer than four cases, three or more runs show how "
+      "much runs differ");
   addShare(app, "--margin", comparison.margin, false,
-           "differences within it are 'same'; not more than --fail-above");
+           "differences within this share are 'same'; at most --fail-above");
   addShare(app, "--fail-above", comparison.fail_above, false,
-           "a case is a regression when it is slower and its ratio is beyond this");
-  app.add_flag("--fail-undecided", comparison.fail_undecided, "undecided cases are failures");
+           "a case is a regression if it is slower by more than this share");
+  app.add_flag("--fail-undecided", comparison.fail_undecided, "fail if any case is undecided");
   app.add_option("--by", comparison.by,
-                 "compare across this instead of each case with itself: algorithm, threads, isa or "
-                 "a parameter; with the first such case of A")
+                 "compare cases that differ in this (algorithm, threads, isa or a parameter) with "
+                 "the first such case of A, instead of each case with itself")
       ->type_name("NAME");
   app.add_flag("--allow-missing", comparison.allow_missing,
-               "cases of A that are not in B are no failure");
+               "do not fail if cases of A are missing in B");
   app.add_flag("--any-conditions", comparison.any_conditions,
-               "compare other processors and build types, too");
+               "compare even across processors and build types");
   for (const ComparisonWriter& writer : comparisonWriters()) {
     addOutput(app, writer.name, options->outputs, writer.doc);
   }

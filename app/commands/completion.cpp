@@ -1,4 +1,4 @@
-// broadmark completion: what makes a shell complete the program's options.
+// broadmark completion: prints scripts for shell completion.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,9 +18,9 @@
 namespace broadmark::commands::completion {
 namespace {
 
-// Each shell has the words of the main command where no other is named.
+// In each shell, the options of the main command are completed unless another command is named.
 
-/// What begins with dashes.
+/// Names of the options, with dashes.
 std::vector<std::string> optionNames(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : shownOptions(command)) {
@@ -35,7 +35,7 @@ std::vector<std::string> commandNames(const CLI::App& main) {
   return names;
 }
 
-/// The branches of a `case` over the commands, the main one last, as the pattern *.
+/// Branches of a `case` statement over the commands; the main one is last, as the pattern *.
 template <class Branch>
 std::string caseBranches(const CLI::App& main, Branch&& branch) {
   std::string text;
@@ -158,7 +158,7 @@ std::function<int()> add(CLI::App& app) {
       ->required();
   return [script, &app] {
     fmt::print("{}", (*script)(*app.get_parent()));
-    return exit_status::fine;
+    return exit_status::success;
   };
 }
 

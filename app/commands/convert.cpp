@@ -1,4 +1,4 @@
-// broadmark convert: a recording as one of another kind.
+// broadmark convert: converts a recording to another format.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,7 +29,7 @@ struct Options {
   bool quiet = false;
 };
 
-/// What the input says of itself, or its sidecar says of it.
+/// Origin of the input, according to itself or its sidecar.
 RecordingOrigin originOf(const Recording& input, const fs::path& path) {
   RecordingOrigin origin = input.origin();
   if (origin.source.empty()) origin.source = path.filename().string();
@@ -37,7 +37,7 @@ RecordingOrigin originOf(const Recording& input, const fs::path& path) {
   return origin;
 }
 
-/// The scene as the output has to hold it. Bodies that may be absent need not ever be.
+/// The scene as the output must hold it. Bodies that may be absent can be present in all frames.
 SceneInfo sceneFor(const fs::path& output, SceneInfo scene) {
   if (output.extension() == kAabbsExtension) scene.all_present = true;
   requireHolds(output, scene);
@@ -59,20 +59,20 @@ int run(const Options& options) {
   const auto input = openRecordingFile(options.input);
   if (fs::weakly_canonical(options.input) == fs::weakly_canonical(options.output)) {
     throw InputError(
-        fmt::format("{}: is the recording itself: choose another name", options.output.string()));
+        fmt::format("{}: is the input recording: choose another name", options.output.string()));
   }
   const SceneInfo scene = sceneFor(options.output, input->scene());
   RecordingWriter writer(options.output, scene, originOf(*input, options.input));
   const InterruptGuard guard;
   Progress progress("converting " + options.input.string(), scene.frames, options.quiet);
-  const bool whole = recordAll(
+  const bool is_complete = recordAll(
       *input,
       [&](const Frame& frame) {
         if (scene.all_present) requirePresent(frame, options.output);
         writer.write(frame);
       },
-      [&](std::uint32_t frame) { return progress.goOn(frame); });
-  if (!whole) throw Interrupted();
+      [&](std::uint32_t frame) { return progress.advance(frame); });
+  if (!is_complete) throw Interrupted();
   const std::string hash = writer.finish();
   progress.print(fmt::format("{}: {}, {} (of {}), hash {}", options.output.string(),
                              extentText(scene.objects, scene.frames),
@@ -86,7 +86,7 @@ std::function<int()> add(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   app.add_option("output", options->output,
-                 fmt::format("what to make of it: its name ends in {}",
+                 fmt::format("recording to write, with a name that ends in {}",
                              fmt::join(boxRecordingExtensions(), " or ")))
       ->type_name("FILE")
       ->required();

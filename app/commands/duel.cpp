@@ -1,4 +1,4 @@
-// broadmark duel: which of several variants is faster, and by how much.
+// broadmark duel: determines which of several variants is fastest, and by how much.
 
 #include "broadmark/analysis/duel.h"
 
@@ -52,18 +52,18 @@ std::vector<DuelSide> sidesOf(const Options& options) {
     for (const std::string& variant : options.variants) {
       sides.push_back({variant + where,
                        caseNamed(variant, options.cases.device, options.cases.answer),
-                       hostMaker(hosts)});
+                       executorFactory(hosts)});
     }
   };
   add(options.hosts, "");
   if (!options.program.empty()) {
-    HostOptions there = options.hosts;
-    there.program = options.program;
-    add(there, fmt::format(" ({})", options.program.string()));
+    HostOptions hosts = options.hosts;
+    hosts.program = options.program;
+    add(hosts, fmt::format(" ({})", options.program.string()));
   }
   if (sides.size() < 2) {
     throw InputError(
-        "duel: one variant alone: name another, or another build of this program "
+        "duel: needs at least two variants, or one and another build of this program "
         "(--baseline-program)");
   }
   return sides;
@@ -74,14 +74,14 @@ int exitStatusOf(const DuelResult& result) {
   for (const DuelResult::Side& side : result.sides) statuses.push_back(side.status);
   const int status = exitStatusOf(statuses);
   // A side that cannot run here leaves nothing to compare.
-  return status == exit_status::fine && !result.ok() ? exit_status::bad_input : status;
+  return status == exit_status::success && !result.ok() ? exit_status::bad_input : status;
 }
 
-/// Says what may disturb the times of any side.
-void warnOf(const std::vector<DuelSide>& sides) {
+/// Prints warnings about disturbances of any side's times.
+void printWarnings(const std::vector<DuelSide>& sides) {
   const Environment environment = thisEnvironment();
   RunWarnings warnings(environment);
-  for (const DuelSide& side : sides) warnings.of(side.test_case);
+  for (const DuelSide& side : sides) warnings.warningsFor(side.test_case);
 }
 
 int run(Options options) {
@@ -94,7 +94,7 @@ int run(Options options) {
   if (recording->scene().frames == 0) {
     throw InputError(fmt::format("duel: {} has no frame to run", options.sources.front()));
   }
-  warnOf(sides);
+  printWarnings(sides);
   constexpr double kTicks = 1000;
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
   options.duel.cancelled = InterruptGuard::requested;
@@ -124,19 +124,19 @@ std::function<int()> add(CLI::App& app) {
           fmt::format("what to run on, one recording: {}", sourceKindsText()))
       ->required();
   app.add_option("variants", options->variants,
-                 "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
-                 "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in "
+                 "variants to compare, written like case names: ID[/ISA][/tTHREADS]"
+                 "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; from a plug-in: "
                  "PLUGIN.so:ID… or NAME:ID…")
       ->type_name("VARIANT")
       ->required();
   addPath(app, "--baseline-program", "PROGRAM", options->program,
           "also run every variant with this build of broadmark");
   addShare(app, "--precision", options->duel.precision, true,
-           "ends the duel: width of the ratios' 95 % intervals; variants within twice that are the "
-           "same");
+           "width of the ratios' 95 % intervals at which the duel ends; variants within twice this "
+           "are the same");
   addPositive(app, "--max-seconds", "S", options->duel.max_seconds, "stop after this many seconds");
   addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
-           "answers of the first pass: full: as exact pair sets; hash: counts and hashes; off");
+           "checks of the first pass: full: exact pair sets; hash: counts and hashes; off");
   addDevice(app, options->cases.device);
   addAnswer(app, options->cases.answer);
   addSceneOptions(app, options->scene);
@@ -154,7 +154,7 @@ std::function<int()> add(CLI::App& app) {
 
 Command command() {
   return {.name = "duel",
-          .summary = "Tells which of several variants is faster: turn by turn on the same frames.",
+          .summary = "Finds the fastest of several variants, run in turns on the same frames.",
           .add = add};
 }
 

@@ -1,4 +1,4 @@
-// broadmark import: files of other programs into one recording.
+// broadmark import: converts files of other programs to a recording.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,7 +29,7 @@ struct Options {
   bool quiet = false;
 };
 
-/// Without an extension it gets that of the recording that can hold the scene.
+/// Output path; without an extension, adds that of a recording that can hold the scene.
 fs::path outputFor(const SceneInfo& scene, fs::path path) {
   if (!path.has_extension()) path += recordingExtension(scene);
   requireRecordingName(path);
@@ -49,9 +49,9 @@ int run(const Options& options) {
   const fs::path path = outputFor(scene, options.output);
   RecordingWriter writer(path, scene, {.source = source.reference.path});
   Progress progress("importing " + scene.name, scene.frames, options.quiet);
-  const bool whole =
-      recordAll(*frames, writer, [&](std::uint32_t frame) { return progress.goOn(frame); });
-  if (!whole) throw Interrupted();
+  const bool is_complete =
+      recordAll(*frames, writer, [&](std::uint32_t frame) { return progress.advance(frame); });
+  if (!is_complete) throw Interrupted();
   const std::string hash = writer.finish();
   progress.print(fmt::format("{}: {} {}, {}, hash {}", path.string(), scene.name, scene.object_type,
                              extentText(scene.objects, scene.frames), hash));
@@ -67,7 +67,7 @@ std::function<int()> add(CLI::App& app) {
       ->type_name("IN")
       ->required();
   addPath(app, "-o,--output", "FILE", options->output,
-          "the recording; without an extension: .aabbs if that can hold it, else .broadmark")
+          "recording to write; without an extension: .aabbs if that can hold it, else .broadmark")
       ->required();
   addReadingOptions(app, options->reading);
   addQuiet(app, options->quiet);

@@ -1,4 +1,4 @@
-// broadmark list: everything that can be named on the command line, from the lists themselves.
+// broadmark list: lists everything that can be named on the command line.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,7 +26,7 @@ struct Options {
   std::vector<std::string> plugins;
 };
 
-/// An object's parameters, one line each.
+/// Formats an object's parameters, one per line.
 std::string parameterLines(Parametrised& object) {
   std::vector<std::vector<std::string>> rows;
   object.visitParameters([&](const Parameter& parameter) {
@@ -55,46 +55,46 @@ std::string exactnessOf(const Algorithm& algorithm) {
   return margin == 0 ? "exact" : fmt::format("margin {}", margin);
 }
 
-/// A paragraph of a list.
+/// Prints a paragraph of a list.
 void printParagraph(const std::string& text) {
   constexpr std::size_t kIndent = 2;
   constexpr std::size_t kHanging = 6;
   fmt::print("{:{}}{}\n", "", kIndent, wrapped(text, kIndent, kHanging));
 }
 
-const char* inChangingWorlds(const Algorithm& algorithm) {
+const char* changingWorldsText(const Algorithm& algorithm) {
   switch (algorithm.traits.changing_worlds) {
     case ChangingWorlds::native:
-      return "by itself";
+      return "natively";
     case ChangingWorlds::compacted:
-      return "absent bodies and unwanted pairs are kept from it";
+      return "absent bodies and filtered pairs are hidden from it";
     case ChangingWorlds::unknown:
       break;
   }
   return "not at all";
 }
 
-const char* ofSeveralWorlds(const Algorithm& algorithm) {
+const char* severalWorldsText(const Algorithm& algorithm) {
   const AlgorithmTraits& traits = algorithm.traits;
   if (traits.changing_worlds == ChangingWorlds::unknown) return "not at all";
   if (traits.instance_per_world) return "an instance for each";
-  if (traits.changing_worlds == ChangingWorlds::native) return "by itself";
+  if (traits.changing_worlds == ChangingWorlds::native) return "natively";
   return traits.on_device ? "side by side" : "side by side if small, else an instance for each";
 }
 
-const char* eventsOf(const Algorithm& algorithm) {
-  return algorithm.traits.events ? "by itself" : "from the pairs of two frames";
+const char* eventsText(const Algorithm& algorithm) {
+  return algorithm.traits.events ? "natively" : "from the pairs of two frames";
 }
 
-/// What the columns have no room for, in sentences.
+/// Details for which the columns have no room, in sentences.
 std::string detailsOf(const Algorithm& algorithm) {
   const AlgorithmDescription& description = algorithm.description;
   std::string text = fmt::format(
       "{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. Several worlds at one "
       "place: {}. Events: {}. {}",
       algorithm.id, algorithm.summary, optimisationsOf(algorithm), description.time,
-      description.space, inChangingWorlds(algorithm), ofSeveralWorlds(algorithm),
-      eventsOf(algorithm), description.source);
+      description.space, changingWorldsText(algorithm), severalWorldsText(algorithm),
+      eventsText(algorithm), description.source);
   std::vector<std::string_view> original;
   for (const OriginalId& id : originalIds()) {
     if (id.algorithm == algorithm.id) original.push_back(id.name);
@@ -110,14 +110,14 @@ std::string detailsOf(const Algorithm& algorithm) {
 void listAlgorithms(const Options& options) {
   std::vector<Algorithm> algorithms = availableAlgorithms(options.plugins);
   if (!options.names.empty()) algorithms = selectAlgorithms(options.names, algorithms, "list");
-  fmt::print("Algorithms (id, family, principle, pairs kept over frames, answer)\n");
+  fmt::print("Algorithms (id, family, principle, update of pairs, answer)\n");
   std::vector<std::vector<std::string>> rows;
   for (const Algorithm& a : algorithms) {
     rows.push_back({" ", a.id, a.family, a.description.principle,
                     a.traits.incremental ? "incremental" : "from scratch", exactnessOf(a)});
   }
   fmt::print("{}", alignColumns(rows, std::vector<bool>(rows.front().size(), false)));
-  fmt::print("\nMore of each, with parameters (default, range)\n");
+  fmt::print("\nDetails of each, with parameters (default, range)\n");
   for (const Algorithm& a : algorithms) {
     printParagraph(detailsOf(a));
     fmt::print("{}", parameterLines(*a.create()));
@@ -197,7 +197,7 @@ int run(const Options& options) {
     throw InputError("list: " + unknownName("kind", options.what, known));
   }
   if (!options.names.empty() && options.what != "algorithms") {
-    throw InputError(fmt::format("list: '{}': names are of algorithms: list algorithms {}",
+    throw InputError(fmt::format("list: '{}': only algorithms can be named: list algorithms {}",
                                  options.names.front(), options.names.front()));
   }
   addEnginesOf(options.plugins);

@@ -1,4 +1,4 @@
-// broadmark manual: the manual page, made from the options.
+// broadmark manual: prints the manual page, generated from the options.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +14,7 @@
 namespace broadmark::commands::manual {
 namespace {
 
-/// A text that roff takes for nothing else: no escapes, no requests, no hyphens for dashes.
+/// Escapes a text for roff: no escapes, no requests, no hyphens for dashes.
 std::string plain(const std::string& text) {
   const bool is_request = text.starts_with('.') || text.starts_with('\'');
   return (is_request ? "\\&" : "") + escaped(text, {{'\\', "\\e"}, {'-', "\\-"}});
@@ -47,7 +47,7 @@ std::string exitStatusEntries() {
   return text;
 }
 
-/// In the macros of man(7).
+/// Formats the manual page with the macros of man(7).
 std::string manualPage(const CLI::App& main, const std::string& version) {
   std::string text = fmt::format(
       ".TH BROADMARK 1 \"\" \"Broadmark {}\" \"User Commands\"\n"
@@ -69,7 +69,7 @@ std::string manualPage(const CLI::App& main, const std::string& version) {
 std::function<int()> add(CLI::App& app) {
   return [&app] {
     fmt::print("{}", manualPage(*app.get_parent(), thisEnvironment().version));
-    return exit_status::fine;
+    return exit_status::success;
   };
 }
 

@@ -1,4 +1,4 @@
-// broadmark merge: result files of shards and machines as one.
+// broadmark merge: merges result files of shards and machines.
 
 #include "broadmark/results/merge.h"
 
@@ -36,7 +36,7 @@ int run(const Options& options) {
   }
   MergedResults merged = mergeResults(runs);
   merged.results.options = names;
-  // Not line by line: an output may be one of the sources.
+  // Written at once rather than line by line, as an output may be one of the sources.
   writeResults(options.outputs, merged.results);
   const auto partial = std::ranges::count_if(
       merged.results.cases, [](const CaseResult& result) { return !result.isComplete(); });
@@ -58,7 +58,7 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {.name = "merge", .summary = "Makes one file of several runs' results.", .add = add};
+  return {.name = "merge", .summary = "Merges the results of several runs.", .add = add};
 }
 
 }  // namespace broadmark::commands::merge

@@ -1,4 +1,4 @@
-// broadmark torture: algorithms in random ways on random worlds, until one of them is wrong.
+// broadmark torture: fuzzes algorithms with random settings on random worlds.
 
 #include "broadmark/fuzz/torture.h"
 
@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 /// Maximum reproducers written per algorithm and kind of fault.
-constexpr std::uint64_t kMaxAlike = 3;
+constexpr std::uint64_t kMaxReproducers = 3;
 
 struct Options : RunRequest {
   Options() {
@@ -46,10 +46,10 @@ struct Options : RunRequest {
   }
 
   bool only_sources = false;
-  std::string case_name;  ///< "": of all kinds
+  std::string case_name;  ///< "": all cases
   double minutes = 1;
-  std::optional<std::uint64_t> rounds;  ///< after which it ends instead
-  std::optional<std::uint64_t> seed;    ///< nothing: of the log, or 1
+  std::optional<std::uint64_t> rounds;  ///< limit that replaces `minutes`
+  std::optional<std::uint64_t> seed;    ///< nothing: that of the log, or 1
   int jobs = allCores();
   fs::path output = "torture";
   bool quiet = false;
@@ -59,18 +59,18 @@ class Torture {
  public:
   explicit Torture(Options options)
       : options_(std::move(options)), log_file_(options_.output / "torture.json") {
-    readSubjects();
+    selectSubjects();
     readLog();
     readSources();
     makeDirectory(options_.output);
-    countFreedMemoryAsFree();
+    disableThreadCaches();
     torture_.seed = log_.seed;
-    torture_.make_host = hostMaker(options_.hosts);
+    torture_.make_executor = executorFactory(options_.hosts);
     torture_.cancelled = InterruptGuard::requested;
     torture_.is_news = [this](const std::string& algorithm, FaultKind kind) {
       const std::lock_guard lock(mutex_);
       const auto times = log_.times.find({algorithm, std::string(kFaultKinds.nameOf(kind))});
-      return times == log_.times.end() || times->second < kMaxAlike;
+      return times == log_.times.end() || times->second < kMaxReproducers;
     };
   }
 
@@ -83,7 +83,7 @@ class Torture {
       throw Interrupted(fmt::format("the same command resumes from {}", log_file_.string()));
     }
     progress.update(kTicks);
-    return log_.times.empty() ? exit_status::fine : exit_status::wrong_answer;
+    return log_.times.empty() ? exit_status::success : exit_status::wrong_answer;
   }
 
  private:
@@ -93,15 +93,15 @@ class Torture {
     return std::chrono::duration<double>(time).count();
   }
 
-  /// For worker processes: what malloc sets aside for each thread to use again it counts as taken.
-  /// That grows for long where sizes vary, and would be told of as a leak.
-  static void countFreedMemoryAsFree() {
-    const char* const others = std::getenv("GLIBC_TUNABLES");
-    const std::string ours = "glibc.malloc.tcache_count=0";
-    ::setenv("GLIBC_TUNABLES", (others == nullptr ? ours : others + (":" + ours)).c_str(), 1);
+  /// Disables malloc's per-thread caches in worker processes. Malloc counts cached memory as in
+  /// use, so with varying sizes the growing caches would be reported as a leak.
+  static void disableThreadCaches() {
+    const char* const present = std::getenv("GLIBC_TUNABLES");
+    const std::string added = "glibc.malloc.tcache_count=0";
+    ::setenv("GLIBC_TUNABLES", (present == nullptr ? added : present + (":" + added)).c_str(), 1);
   }
 
-  void readSubjects() {
+  void selectSubjects() {
     if (!options_.case_name.empty()) {
       torture_.only_case = caseNamed(options_.case_name, "");
       log_.subjects = {options_.case_name};
@@ -115,7 +115,7 @@ class Torture {
       torture_.algorithms.push_back(std::move(algorithm));
     }
     log_.subjects = algorithmIds(torture_.algorithms);
-    if (log_.subjects.empty()) throw InputError("torture: none of these finds pairs");
+    if (log_.subjects.empty()) throw InputError("torture: none of these algorithms finds pairs");
   }
 
   void addBuild(const Algorithm& algorithm) {
@@ -125,8 +125,8 @@ class Torture {
     }
   }
 
-  /// Goes on where an earlier call has ended; not if a plug-in has been built again since, as what
-  /// was found then may be mended.
+  /// Resumes from an earlier run's log, unless a plug-in has been rebuilt since, as that may have
+  /// fixed the faults found.
   void readLog() {
     log_.seed = options_.seed.value_or(log_.seed);
     if (!fs::exists(log_file_)) return;
@@ -135,7 +135,7 @@ class Torture {
         log.subjects == log_.subjects && log.seed == options_.seed.value_or(log.seed);
     if (!is_same) {
       throw InputError(
-          fmt::format("{}: is of other algorithms or another seed ({}): give another --output",
+          fmt::format("{}: is of other algorithms or another seed ({}): choose another --output",
                       log_file_.string(), log.seed));
     }
     if (log.builds != log_.builds) {
@@ -144,7 +144,7 @@ class Torture {
       return;
     }
     log_ = std::move(log);
-    waiting_.assign(log_.left.begin(), log_.left.end());
+    repeated_.assign(log_.unfinished.begin(), log_.unfinished.end());
   }
 
   void readSources() {
@@ -157,12 +157,12 @@ class Torture {
   }
 
   static TortureRecording inMemory(IndexedFrames& recording) {
-    TortureRecording held{recording.scene(), {}};
-    for (std::uint32_t index = 0; index <= held.scene.frames; ++index) {
+    TortureRecording copy{recording.scene(), {}};
+    for (std::uint32_t index = 0; index <= copy.scene.frames; ++index) {
       const std::span<const Aabb> boxes = recording.at(index).boxes;
-      held.frames.emplace_back(boxes.begin(), boxes.end());
+      copy.frames.emplace_back(boxes.begin(), boxes.end());
     }
-    return held;
+    return copy;
   }
 
   void runJobs(Progress& progress) {
@@ -175,9 +175,9 @@ class Torture {
         jobs.push_back(std::async(std::launch::async, [&] { runRounds(start, progress); }));
       }
       for (std::future<void>& job : jobs) {
-        constexpr std::chrono::milliseconds kMoment{200};
-        for (bool ended = false; !ended;) {
-          ended = job.wait_for(kMoment) == std::future_status::ready;
+        constexpr std::chrono::milliseconds kPollInterval{200};
+        for (bool is_ready = false; !is_ready;) {
+          is_ready = job.wait_for(kPollInterval) == std::future_status::ready;
           const std::lock_guard lock(mutex_);
           const Clock::time_point now = Clock::now();
           log_.seconds = before + seconds(now - start);
@@ -189,17 +189,17 @@ class Torture {
         job.get();
       }
     } catch (...) {
-      beginNoMore();  // the jobs are waited for
+      stopStarting();  // the futures wait for the jobs
       throw;
     }
   }
 
-  void beginNoMore() {
+  void stopStarting() {
     const std::lock_guard lock(mutex_);
-    is_over_ = true;
+    stopped_ = true;
   }
 
-  /// One round after the other; what one throws ends the rounds of the other threads, too.
+  /// Runs one round after the other. An exception also stops the other threads.
   void runRounds(Clock::time_point start, Progress& progress) {
     try {
       while (const std::optional<std::uint64_t> number = nextRound(start)) {
@@ -207,41 +207,41 @@ class Torture {
       }
     } catch (const Cancelled&) {
     } catch (...) {
-      beginNoMore();
+      stopStarting();
       throw;
     }
   }
 
   std::optional<std::uint64_t> nextRound(Clock::time_point start) {
     const std::lock_guard lock(mutex_);
-    is_over_ |= options_.rounds ? begun_ >= *options_.rounds
+    stopped_ |= options_.rounds ? started_ >= *options_.rounds
                                 : seconds(Clock::now() - start) >= 60 * options_.minutes;
-    if (is_over_ || InterruptGuard::requested()) return std::nullopt;
-    ++begun_;
-    if (waiting_.empty()) {
-      log_.left.push_back(log_.next);
+    if (stopped_ || InterruptGuard::requested()) return std::nullopt;
+    ++started_;
+    if (repeated_.empty()) {
+      log_.unfinished.push_back(log_.next);
       return log_.next++;
     }
-    const std::uint64_t number = waiting_.front();
-    waiting_.pop_front();
+    const std::uint64_t number = repeated_.front();
+    repeated_.pop_front();
     return number;
   }
 
   void add(const TortureRound& round, std::uint64_t number, Progress& progress) {
     const std::lock_guard lock(mutex_);
-    std::erase(log_.left, number);
+    std::erase(log_.unfinished, number);
     for (const auto& [key, count] : round.coverage) log_.coverage[key] += count;
     if (!round.finding) return;
     const TortureFinding& finding = *round.finding;
     const std::string kind(kFaultKinds.nameOf(finding.fault.kind));
-    if (log_.times[{finding.test_case.algorithm.id, kind}]++ >= kMaxAlike) return;
+    if (log_.times[{finding.test_case.algorithm.id, kind}]++ >= kMaxReproducers) return;
     log_.found.push_back(write(finding, kind, number));
     progress.print(formatFoundFault(log_.found.back()));
   }
 
   FoundFault write(const TortureFinding& finding, const std::string& kind, std::uint64_t round) {
     const fs::path file = unusedName(finding.test_case.algorithm.id, kind);
-    writePart(file, *finding.frames, finding.part);
+    writeSelection(file, *finding.frames, finding.part);
     FoundFault found{.algorithm = finding.test_case.algorithm.id,
                      .kind = kind,
                      .test_case = caseName(finding.test_case),
@@ -256,7 +256,7 @@ class Torture {
                             finding.fault.kind == FaultKind::failure ||
                             finding.fault.kind == FaultKind::hang
                         ? reproducingCommand(finding.test_case, file)
-                        : torturingCommand(finding.test_case, file);
+                        : tortureCommand(finding.test_case, file);
     return found;
   }
 
@@ -271,7 +271,7 @@ class Torture {
   void showProgress(Progress& progress, double passed) const {
     progress.detail(counted(log_.frames(), "frame"));
     const double share = options_.rounds
-                             ? static_cast<double>(begun_) / static_cast<double>(*options_.rounds)
+                             ? static_cast<double>(started_) / static_cast<double>(*options_.rounds)
                              : passed / (60 * options_.minutes);
     const auto ticks = static_cast<std::uint64_t>(kTicks * std::min(share, 1.0));
     progress.update(ticks);
@@ -281,17 +281,17 @@ class Torture {
   fs::path log_file_;
   TortureLog log_;
   TortureOptions torture_;
-  std::mutex mutex_;  ///< of log_, the progress and what follows
-  std::uint64_t begun_ = 0;
-  bool is_over_ = false;               ///< no more rounds begin
-  std::deque<std::uint64_t> waiting_;  ///< of log_.left those that have not been begun again
+  std::mutex mutex_;  ///< guards log_, the progress and the following members
+  std::uint64_t started_ = 0;
+  bool stopped_ = false;                ///< no more rounds start
+  std::deque<std::uint64_t> repeated_;  ///< unfinished rounds of the log that have not restarted
 };
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   addRepeatable(app, "source", "SOURCE", options->sources,
                 "also fuzz with excerpts of these recordings, meshes or scenes");
-  app.add_flag("--only-sources", options->only_sources, "no worlds but those")->needs("source");
+  app.add_flag("--only-sources", options->only_sources, "use no other worlds")->needs("source");
   const auto set_algorithms = [options = options.get()](const std::vector<std::string>& parts) {
     options->cases.algorithms = parts;
   };
@@ -299,26 +299,25 @@ std::function<int()> add(CLI::App& app) {
       addList(app, "--algorithm", "ID[,ID...]", set_algorithms, {},
               "algorithms: ids, families, patterns such as 'sap*', or all (default)");
   app.add_option("--case", options->case_name,
-                 "only this case, written as cases are printed: kd-mt/avx2/t2/margin=0.1")
+                 "only this case, written like case names: kd-mt/avx2/t2/margin=0.1")
       ->type_name("CASE")
       ->excludes(algorithm);
   addPlugins(app, options->plugins, "algorithms");
-  addPositive(app, "--minutes", "M", options->minutes,
-              "how long; rounds that have begun are finished");
+  addPositive(app, "--minutes", "M", options->minutes, "duration; rounds in progress are finished");
   const auto set_rounds = [options = options.get()](const std::string& text) {
     options->rounds = parseInteger(text, "--rounds", 1, 1'000'000'000);
   };
   addValue(app, "--rounds", "N", set_rounds, {},
-           "how many rounds instead: a case each, on up to forty worlds");
+           "number of rounds, instead of a duration: one case each, on up to forty worlds");
   const auto set_seed = [options = options.get()](const std::string& text) {
     options->seed = parseInteger(text, "--seed", 0, std::numeric_limits<std::uint32_t>::max());
   };
   addValue(
       app, "--seed", "S", set_seed, [] { return "1"; }, "same seed, same rounds");
-  addInteger(app, "--jobs", "J", options->jobs, 1, 1024, "rounds at a time");
+  addInteger(app, "--jobs", "J", options->jobs, 1, 1024, "rounds run at the same time");
   addPath(app, "--output", "DIR", options->output,
-          "where recordings of what goes wrong are written, and the log (torture.json) with which "
-          "the same command goes on (default: torture)");
+          "directory for recordings of faults and for the log (torture.json), from which the same "
+          "command resumes (default: torture)");
   addHosts(app, options->hosts);
   addQuiet(app, options->quiet);
   return [options] {
@@ -331,7 +330,7 @@ std::function<int()> add(CLI::App& app) {
 
 Command command() {
   return {.name = "torture",
-          .summary = "Runs algorithms in random ways on random worlds, and shrinks what fails.",
+          .summary = "Fuzzes algorithms on random worlds, and shrinks failing cases.",
           .add = add};
 }
 

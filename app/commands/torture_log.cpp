@@ -53,7 +53,7 @@ void addCount(TortureCoverage& coverage, const JsonFields& json) {
        .filtered = json.integer<std::uint64_t>("filtered")};
 }
 
-/// What was covered of one algorithm.
+/// Coverage of an algorithm.
 struct Covered {
   TortureCount count;
   std::uint64_t events = 0;  ///< frames
@@ -62,7 +62,7 @@ struct Covered {
   std::set<int> threads;
 };
 
-std::map<std::string, Covered> coveredOf(const TortureCoverage& coverage) {
+std::map<std::string, Covered> coverageByAlgorithm(const TortureCoverage& coverage) {
   std::map<std::string, Covered> rows;
   for (const auto& [key, count] : coverage) {
     Covered& row = rows[key.algorithm];
@@ -75,16 +75,16 @@ std::map<std::string, Covered> coveredOf(const TortureCoverage& coverage) {
   return rows;
 }
 
-std::string share(std::uint64_t some, std::uint64_t all) {
-  if (all == 0) return "–";
-  return fmt::format("{:.0f} %", 100 * static_cast<double>(some) / static_cast<double>(all));
+std::string share(std::uint64_t part, std::uint64_t total) {
+  if (total == 0) return "–";
+  return fmt::format("{:.0f} %", 100 * static_cast<double>(part) / static_cast<double>(total));
 }
 
 std::string coverageTable(const TortureLog& log) {
   std::vector<std::vector<std::string>> table = {{"algorithm", "worlds", "frames", "kinds",
                                                   "events", "come and go", "filtered", "threads",
                                                   "instruction sets"}};
-  for (const auto& [algorithm, row] : coveredOf(log.coverage)) {
+  for (const auto& [algorithm, row] : coverageByAlgorithm(log.coverage)) {
     const TortureCount& count = row.count;
     table.push_back({algorithm, fmt::format("{}", count.worlds), fmt::format("{}", count.frames),
                      fmt::format("{} of {}", row.worlds.size(), tortureWorlds().size()),
@@ -108,7 +108,7 @@ TortureLog parseTortureLog(std::string_view text, const std::string& name) {
   const Json json = parseJson(text, name);
   const JsonFields fields(json, name);
   if (fields.text("schema") != kSchema) {
-    throw InputError(fmt::format("{}: no log of a torture (\"{}\")", name, kSchema));
+    throw InputError(fmt::format("{}: not a torture log (\"{}\")", name, kSchema));
   }
   TortureLog log;
   log.seed = fields.integer<std::uint64_t>("seed");
@@ -117,7 +117,7 @@ TortureLog parseTortureLog(std::string_view text, const std::string& name) {
   log.subjects = fields.texts("subjects");
   log.builds = fields.texts("builds");
   for (const Json& round : fields.array("left")) {
-    log.left.push_back(JsonFields::integerOf<std::uint64_t>(round, fields.path("left")));
+    log.unfinished.push_back(JsonFields::integerOf<std::uint64_t>(round, fields.path("left")));
   }
   fields.eachObject("found",
                     [&](const JsonFields& found) { log.found.push_back(foundFrom(found)); });
@@ -131,7 +131,7 @@ TortureLog parseTortureLog(std::string_view text, const std::string& name) {
 
 std::string tortureLogText(const TortureLog& log) {
   Json json = {{"schema", kSchema},        {"seed", log.seed},       {"subjects", log.subjects},
-               {"builds", log.builds},     {"next", log.next},       {"left", log.left},
+               {"builds", log.builds},     {"next", log.next},       {"left", log.unfinished},
                {"seconds", log.seconds},   {"found", Json::array()}, {"times", Json::array()},
                {"coverage", Json::array()}};
   for (const FoundFault& fault : log.found) json["found"].push_back(toJson(fault));
@@ -153,7 +153,7 @@ std::string formatTortureLog(const TortureLog& log) {
   const std::uint64_t frames = log.frames();
   text +=
       fmt::format("seed {}: {} of {} in {}: {:.0f} a second\n", log.seed, counted(frames, "frame"),
-                  counted(log.next - log.left.size(), "round"), waitingTime(log.seconds),
+                  counted(log.next - log.unfinished.size(), "round"), waitingTime(log.seconds),
                   static_cast<double>(frames) / std::max(log.seconds, 1e-9));
   if (log.times.empty()) return text + "nothing went wrong\n";
   for (const auto& [fault, times] : log.times) {

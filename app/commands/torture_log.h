@@ -1,4 +1,4 @@
-// What a torture has done so far, in a file with which it goes on.
+// Log of a torture, from which it can be resumed.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace broadmark {
 
-/// A finding that has been written.
+/// A fault with a written reproducer.
 struct FoundFault {
   std::string algorithm;
   std::string kind;       ///< as in kFaultKinds
@@ -24,32 +24,32 @@ struct FoundFault {
   std::size_t bodies = 0;
   std::size_t frames = 0;  ///< the initial pose not counted
   bool minimal = false;
-  std::string command;  ///< that shows it
+  std::string command;  ///< reproduces the fault
 };
 
 /// "broadmark-torture/1"
 struct TortureLog {
   std::uint64_t seed = 1;
-  std::vector<std::string> subjects;  ///< ids of algorithms, or the one case
-  std::vector<std::string> builds;    ///< hashes of their plug-ins
-  std::uint64_t next = 0;             ///< the first round that has not been begun
-  std::vector<std::uint64_t> left;    ///< rounds before that which are not finished
+  std::vector<std::string> subjects;      ///< ids of algorithms, or the one case
+  std::vector<std::string> builds;        ///< hashes of their plug-ins
+  std::uint64_t next = 0;                 ///< first round that has not started
+  std::vector<std::uint64_t> unfinished;  ///< rounds before `next` that have not finished
   double seconds = 0;
   TortureCoverage coverage;
   std::vector<FoundFault> found;
-  /// Of an algorithm and a kind of fault: how often it was found. Only the first few are written.
+  /// Number of faults per algorithm and kind of fault, including those without a reproducer.
   std::map<std::pair<std::string, std::string>, std::uint64_t> times;
 
   [[nodiscard]] std::uint64_t frames() const;
 };
 
-/// From the text of such a file, and back. Throws InputError, which calls it `name`.
+/// Parses and formats a log file. Throws InputError, calling the file `name`.
 TortureLog parseTortureLog(std::string_view text, const std::string& name);
 std::string tortureLogText(const TortureLog&);
 
-/// A finding in one line: what went wrong, and on how much.
+/// Formats a fault and the size of its reproducer on one line.
 std::string formatFoundFault(const FoundFault&);
-/// What has been covered, an algorithm a row; and what was found.
+/// Formats the coverage, one algorithm per row, and the faults found.
 std::string formatTortureLog(const TortureLog&);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// broadmark verify: reads recordings through, and prints faults and statistics.
+// broadmark verify: reads complete recordings, and prints faults and statistics.
 
 #include <fmt/format.h>
 
@@ -37,14 +37,14 @@ struct Options {
   bool quiet = false;
 };
 
-constexpr const char* kNothing = "–";
+constexpr const char* kNoValue = "–";
 
 std::string percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.1f} %", 100 * *share) : kNothing;
+  return share ? fmt::format("{:.1f} %", 100 * *share) : kNoValue;
 }
 
 std::string number(const std::optional<double>& value) {
-  return value ? fmt::format("{:.4g}", *value) : kNothing;
+  return value ? fmt::format("{:.4g}", *value) : kNoValue;
 }
 
 using Cells = std::vector<std::string>;
@@ -58,23 +58,23 @@ Cells boxCells(const RangeStatistics& range) {
           number(range.sizeRatio()),   fmt::format("{}", range.max_outside)};
 }
 
-/// Of worlds in which bodies come and go.
+/// For worlds in which bodies come and go.
 constexpr const char* kPopulationHeadings[] = {"fewest", "bodies", "most",
                                                "appear", "vanish", "change"};
 Cells populationCells(const RangeStatistics& range) {
-  const auto change = [&](double Changes::*which) {
-    return range.changes ? number((*range.changes).*which) : kNothing;
+  const auto change = [&](double Changes::*member) {
+    return range.changes ? number((*range.changes).*member) : kNoValue;
   };
   return {number(range.min_bodies),   number(range.mean_bodies),  number(range.max_bodies),
           change(&Changes::appeared), change(&Changes::vanished), change(&Changes::changed)};
 }
 
-/// Rows of cells, each after a margin.
+/// Formats rows with columns aligned to the right.
 std::string rightAligned(const std::vector<Cells>& rows) {
   return alignColumns(rows, std::vector<bool>(rows.front().size(), true));
 }
 
-/// Which layers collide, how many bodies are in each and how many pairs there are between two.
+/// Table of the layers: numbers of bodies, and of pairs between two colliding layers.
 std::string layerTable(const FilterStatistics& filter) {
   std::vector<Cells> rows = {{"", "layer", "bodies"}};
   for (const auto& [layer, bodies] : filter.layers) {
@@ -84,7 +84,7 @@ std::string layerTable(const FilterStatistics& filter) {
       const auto pair = std::ranges::find_if(filter.layer_pairs, [&](const auto& entry) {
         return entry.a == std::min(layer, other) && entry.b == std::max(layer, other);
       });
-      rows.back().push_back(pair == filter.layer_pairs.end() ? kNothing : number(pair->pairs));
+      rows.back().push_back(pair == filter.layer_pairs.end() ? kNoValue : number(pair->pairs));
     }
   }
   return rightAligned(rows);
@@ -103,7 +103,7 @@ std::string formatFilter(const FilterStatistics& filter) {
   return text;
 }
 
-/// A row for each part of the scene.
+/// Table with a row for each part of the scene.
 std::string rangeTable(std::span<const char* const> headings,
                        Cells (*cells)(const RangeStatistics&),
                        const SceneDescription& description) {
@@ -131,10 +131,10 @@ std::string formatDescription(const SceneInfo& scene, const SceneDescription& de
   return text;
 }
 
-/// Reads every frame, and describes the scene if wanted. Nothing when interrupted. Throws
+/// Reads every frame, and optionally describes the scene. Returns nothing when interrupted. Throws
 /// InputError at the first fault.
-std::optional<SceneDescription> readThrough(IndexedFrames& recording, bool describe_it,
-                                            const FrameProgress& progress) {
+std::optional<SceneDescription> readFrames(IndexedFrames& recording, bool describe_it,
+                                           const FrameProgress& progress) {
   if (describe_it) return describe(recording, 10, progress);
   for (std::optional<Frame> frame = recording.rewind(); frame; frame = recording.next()) {
     if (!progress(frame->index)) return std::nullopt;
@@ -142,17 +142,18 @@ std::optional<SceneDescription> readThrough(IndexedFrames& recording, bool descr
   return SceneDescription{};
 }
 
-/// Checks a recording and prints its description. Nothing when interrupted. Throws InputError.
-std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
+/// Checks a recording and prints its description. Returns nothing when interrupted. Throws
+/// InputError.
+std::optional<DescribedRecording> verifyRecording(const fs::path& file, const Options& options) {
   Source source = fileSource({file.string()}, options.reading);
   const auto opened = openForCommand(source, options.quiet);
   IndexedFrames& recording = *opened;
   const std::string& hash = source.reference.hash;
   const SceneInfo& scene = recording.scene();
-  const bool slow = options.describe || recordingBytes(scene) > (1U << 28);
-  Progress progress("verifying " + file.string(), scene.frames, !slow || options.quiet);
-  const auto description = readThrough(recording, options.describe,
-                                       [&](std::uint32_t frame) { return progress.goOn(frame); });
+  const bool is_slow = options.describe || recordingBytes(scene) > (1U << 28);
+  Progress progress("verifying " + file.string(), scene.frames, !is_slow || options.quiet);
+  const auto description = readFrames(recording, options.describe,
+                                      [&](std::uint32_t frame) { return progress.advance(frame); });
   if (!description) return std::nullopt;
   std::optional<std::string> stated = bakedHash(file);
   if (stated && options.reading.swept) stated = sweptHash(*stated);
@@ -173,11 +174,11 @@ std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options&
 int run(const Options& options) {
   if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
-  int status = exit_status::fine;
+  int status = exit_status::success;
   std::vector<DescribedRecording> described;
   for (const auto& file : options.files) {
     try {
-      auto recording = verifyOne(file, options);
+      auto recording = verifyRecording(file, options);
       if (!recording) throw Interrupted();
       described.push_back(std::move(*recording));
     } catch (const InputError& error) {
@@ -193,18 +194,17 @@ std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option(
          "files", options->files,
-         fmt::format("{}; or what can be imported: {}", recordingKindsText(), importKindsText()))
+         fmt::format("{}; or importable files: {}", recordingKindsText(), importKindsText()))
       ->type_name("FILE")
       ->required();
   CLI::Option* describe = app.add_flag(
       "--describe", options->describe,
-      "also print what each is like, over time: density, pairs per body, share of "
-      "moving bodies, sizes (longest edge of a box), most bodies outside the world; where "
-      "bodies come and go, how many are present, and how many appear, vanish and "
-      "change in a frame; where not all pairs are wanted, bodies by layer, and pairs "
-      "by layers that collide ('–': do not)");
+      "also print statistics over time: density, pairs per body, share of moving bodies, sizes "
+      "(longest edge of a box), maximum number of bodies outside the world; if bodies come and go, "
+      "how many are present, and how many appear, vanish and change per frame; if pairs are "
+      "filtered, bodies by layer, and pairs by colliding layers ('–': no collisions)");
   addPath(app, "--json", "FILE", options->json,
-          "write that as JSON, too; '-': to standard output, instead of all else")
+          "also write the statistics as JSON; '-': to standard output, instead of all other output")
       ->needs(describe);
   addReadingOptions(app, options->reading);
   addQuiet(app, options->quiet);

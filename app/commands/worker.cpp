@@ -15,9 +15,9 @@ namespace {
 Algorithm find(const std::string& id, const std::string& plugin) {
   const std::vector<Algorithm> known =
       availableAlgorithms(plugin.empty() ? std::vector<std::string>() : std::vector{plugin});
-  const bool gone = !plugin.empty() && findAlgorithm(id, known) == nullptr;
-  if (gone)
-    throw InputError(fmt::format("--plugin: {}: has no algorithm '{}' any more", plugin, id));
+  const bool is_missing = !plugin.empty() && findAlgorithm(id, known) == nullptr;
+  if (is_missing)
+    throw InputError(fmt::format("--plugin: {}: no longer has an algorithm '{}'", plugin, id));
   return requireAlgorithm(id, known);
 }
 
@@ -25,7 +25,7 @@ Algorithm find(const std::string& id, const std::string& plugin) {
 
 Command command() {
   return {.name = "worker",
-          .summary = "Run a case for the broadmark that starts this one (not to be called by hand)",
+          .summary = "Runs a case for the broadmark process that starts it (internal).",
           .add = [](CLI::App&) -> std::function<int()> {
             return [] {
               serveCase(find);

@@ -1,4 +1,4 @@
-// Matching the cases of two runs, and judging each pair by the interval of its ratio.
+// Matches the cases of two runs, and judges each pair by the interval of its ratio.
 
 #include "compare/comparison.h"
 
@@ -28,23 +28,23 @@ struct Candidate {
   }
 };
 
-/// Which cases belong together: the recording's hash, what is left of the case's name, and which of
-/// those that are alike in both.
+/// Identifies cases to compare: the recording's hash, the case's name without the compared part,
+/// and a counter for cases that share both.
 using CaseKey = std::tuple<std::string, std::string, int>;
 
-bool isThreads(const std::string& part) {
+bool isThreadCount(const std::string& part) {
   return part.size() > 1 && part[0] == 't' &&
          std::all_of(part.begin() + 1, part.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether a part of a case's name, but the first, states this.
-bool states(const std::string& part, const std::string& what) {
-  if (what == "threads") return isThreads(part);
-  if (what == "isa") return kIsas.find(part).has_value();
-  return part.starts_with(what + '=');
+/// Whether a part of a case's name, other than the first, states this property.
+bool states(const std::string& part, const std::string& property) {
+  if (property == "threads") return isThreadCount(part);
+  if (property == "isa") return kIsas.find(part).has_value();
+  return part.starts_with(property + '=');
 }
 
-/// The case's name without what is compared.
+/// The case's name without the property `by`.
 std::string nameWithout(const CaseResult& result, const std::string& by) {
   if (by == "algorithm") return {};
   std::string name = caseNameOf(result);
@@ -55,15 +55,15 @@ std::string nameWithout(const CaseResult& result, const std::string& by) {
   return fmt::format("{}", fmt::join(parts, "/"));
 }
 
-/// The cases of one run by what they are compared as, in their order.
+/// The cases of one run with their keys, in their order.
 std::vector<std::pair<CaseKey, Candidate>> keysOf(const Results& results, const std::string& by) {
   std::vector<std::pair<CaseKey, Candidate>> keys;
   std::map<std::pair<std::string, std::string>, int> seen;
   for (const CaseResult& result : results.cases) {
     const std::string name = nameWithout(result, by);
-    // With --by several are compared with the first; else each with its like.
-    const int which = by.empty() ? seen[{result.recording.hash, name}]++ : 0;
-    keys.push_back({{result.recording.hash, name, which}, {&results, &result}});
+    // With --by, several cases are compared with the first; else the k-th with the k-th.
+    const int index = by.empty() ? seen[{result.recording.hash, name}]++ : 0;
+    keys.push_back({{result.recording.hash, name, index}, {&results, &result}});
   }
   return keys;
 }
@@ -106,8 +106,8 @@ Verdict verdictOn(const Estimate& ratio, const ComparisonOptions& options) {
   return is_tolerated ? verdict : Verdict::regressed;
 }
 
-/// All but the times. `before` has one case or, of several baselines, that case of each. The
-/// verdict is not_timed even if the case was timed.
+/// Compares everything except times. `before` has one case or, with several baselines, that case of
+/// each. The verdict is not_timed even if the case was timed.
 CaseComparison compareCase(std::span<const Candidate> before, const Candidate& after,
                            const ComparisonOptions& options) {
   const CaseResult& a = *before.front().result;
@@ -129,40 +129,40 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
   return compared;
 }
 
-/// What is to be known of a run as a whole: that it is partial, and what may have disturbed it.
-void noteRun(const NamedResults& named, std::vector<std::string>& notes) {
-  const auto note = [&](const std::string& text) { notes.push_back(named.name + ": " + text); };
-  if (!named.results.complete) note("partial: the run did not come to its end");
+/// Adds notes on a run as a whole: whether it is partial, and what may have disturbed it.
+void addNotes(const NamedResults& named, std::vector<std::string>& notes) {
+  const auto add = [&](const std::string& text) { notes.push_back(named.name + ": " + text); };
+  if (!named.results.complete) add("partial: the run did not finish");
   std::set<std::string> warnings;
   for (const CaseResult& result : named.results.cases) {
     if (!result.isComplete()) {
-      note(fmt::format("{}: {} of {} repetitions", result.id, result.repetitions.size(),
-                       result.conditions.repetitions));
+      add(fmt::format("{}: {} of {} repetitions", result.id, result.repetitions.size(),
+                      result.conditions.repetitions));
     }
     for (const std::string& warning : result.conditions.warnings) {
-      if (warnings.insert(warning).second) note(warning);
+      if (warnings.insert(warning).second) add(warning);
     }
   }
 }
 
-/// Finds for each case of B what it is compared with, and compares them.
+/// Finds the counterpart of each case of B, and compares both.
 class Matching {
  public:
   Matching(std::span<const NamedResults> before, const NamedResults& after,
            const ComparisonOptions& options)
       : options_(options), within_a_run_(before.size() == 1 && before[0].name == after.name) {
     for (const NamedResults& named : before) {
-      std::set<CaseKey> first_ones;  // of this run
+      std::set<CaseKey> keys;  // of this run
       for (const auto& [key, candidate] : keysOf(named.results, options.by)) {
-        if (!first_ones.insert(key).second) continue;
+        if (!keys.insert(key).second) continue;
         if (!before_.contains(key)) order_.push_back(key);
         before_[key].push_back(candidate);
         if (options.by.empty()) by_id_[candidate.result->id] = key;
       }
     }
-    for (const auto& [key, candidate] : keysOf(after.results, options.by)) take(key, candidate);
+    for (const auto& [key, candidate] : keysOf(after.results, options.by)) match(key, candidate);
     for (const CaseKey& key : order_) {
-      if (met_.contains(key)) continue;
+      if (matched_.contains(key)) continue;
       cases_.push_back({.id = before_.at(key).front().result->id, .verdict = Verdict::missing});
     }
     compareTimes();
@@ -171,9 +171,9 @@ class Matching {
   std::vector<CaseComparison> takeCases() { return std::move(cases_); }
 
  private:
-  void take(const CaseKey& key, const Candidate& after) {
+  void match(const CaseKey& key, const Candidate& after) {
     if (const auto found = before_.find(key); found != before_.end()) {
-      met_.insert(key);
+      matched_.insert(key);
       const std::vector<Candidate>& before = found->second;
       if (!options_.by.empty() && before.front().result->id == after.result->id) return;
       cases_.push_back(compareCase(before, after, options_));
@@ -186,12 +186,12 @@ class Matching {
       }
       return;
     }
-    const auto namesake = by_id_.find(after.result->id);
-    const bool other =
-        namesake != by_id_.end() && std::get<0>(namesake->second) != after.result->recording.hash;
-    if (other) met_.insert(namesake->second);
-    cases_.push_back(
-        {.id = after.result->id, .verdict = other ? Verdict::other_recording : Verdict::added});
+    const auto same_id = by_id_.find(after.result->id);
+    const bool is_rerecorded =
+        same_id != by_id_.end() && std::get<0>(same_id->second) != after.result->recording.hash;
+    if (is_rerecorded) matched_.insert(same_id->second);
+    cases_.push_back({.id = after.result->id,
+                      .verdict = is_rerecorded ? Verdict::other_recording : Verdict::added});
   }
 
   void compareTimes() {
@@ -203,7 +203,7 @@ class Matching {
     }
   }
 
-  /// Variants are not expected to drift alike: with --by each is judged alone.
+  /// With --by, each case is judged alone, as different variants need not drift alike.
   [[nodiscard]] std::vector<std::optional<RunRatio>> ratiosOfTimed() const {
     if (options_.by.empty()) return ratiosOfRuns(timed_);
     std::vector<std::optional<RunRatio>> ratios;
@@ -219,10 +219,10 @@ class Matching {
   std::map<CaseKey, std::vector<Candidate>> before_;
   std::map<std::string, CaseKey> by_id_;
   std::vector<CaseKey> order_;
-  std::set<CaseKey> met_;
+  std::set<CaseKey> matched_;
   std::vector<CaseComparison> cases_;
   std::vector<PairedCase> timed_;
-  std::vector<std::size_t> timed_cases_;  ///< for each timed one its place among the cases
+  std::vector<std::size_t> timed_cases_;  ///< index into cases_ of each timed case
 };
 
 /// "+5.3 %"
@@ -263,13 +263,13 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
                           const ComparisonOptions& options) {
   if (!options.by.empty()) requireKnown(options.by, after.results);
   Comparison comparison{.options = options, .cases = {}, .notes = {}};
-  for (const NamedResults& named : before) noteRun(named, comparison.notes);
-  noteRun(after, comparison.notes);
+  for (const NamedResults& named : before) addNotes(named, comparison.notes);
+  addNotes(after, comparison.notes);
   comparison.cases = Matching(before, after, comparison.options).takeCases();
   const double drift = comparison.drift().value_or(0);
   if (std::abs(drift) > options.margin) {
     comparison.notes.push_back(fmt::format(
-        "all cases together took {:+.1f} % time: the machine changed, or something that "
+        "the time of all cases together changed by {:+.1f} %: the machine changed, or something "
         "they share; each is judged relative to the others",
         100 * drift));
   }

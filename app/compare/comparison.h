@@ -1,4 +1,4 @@
-// Two runs compared case by case.
+// Compares two runs case by case.
 #pragma once
 
 #include <optional>
@@ -12,75 +12,75 @@
 
 namespace broadmark {
 
-/// Something that times depend on, and that is not the same for both.
+/// A condition that affects times and differs between two cases.
 struct ConditionDifference {
-  std::string what;  ///< "build type: Release -> Debug"
-  bool refused = false;
+  std::string what;      ///< "build type: Release -> Debug"
+  bool refused = false;  ///< times are compared only with any_conditions
 };
 
-/// A case of either run.
+/// Comparison of a case, which may be missing in one of the runs.
 struct CaseComparison {
   std::string id;
   std::string baseline;  ///< the id of the case in A; "": the same, or none
   Verdict verdict = Verdict::same;
   std::vector<ConditionDifference> conditions;
-  // Of a case on the same recording in both runs.
+  // For a case on the same recording in both runs.
   Status status_before = Status::ok;
   Status status_after = Status::ok;
-  std::optional<RunRatio> ratio = {};  ///< of a case that is ok in both
+  std::optional<RunRatio> ratio = {};  ///< if the case is ok in both
 };
 
 struct ComparisonOptions {
   double fail_above = 0.05;  ///< a slow-down by more than this share is a regression
-  double margin = 0.05;      ///< smaller differences do not matter; at most `fail_above` counts
+  double margin = 0.05;      ///< smaller differences are ignored; capped at `fail_above`
   /// "": each case is compared with itself. Else with the first case of A that differs at most in
   /// this: "algorithm", "threads", "isa" or a parameter.
   std::string by;
-  bool any_conditions = false;  ///< compares what is refused otherwise
-  bool allow_missing = false;   ///< cases that are only in A are no failure
+  bool any_conditions = false;  ///< ignore ConditionDifference::refused
+  bool allow_missing = false;   ///< cases that are only in A are not failures
   bool fail_undecided = false;
 };
 
 struct Comparison {
   ComparisonOptions options;
-  /// Those of B in their order, then those only in A.
+  /// Cases of B in their order, then those only in A.
   std::vector<CaseComparison> cases;
   std::vector<std::string> notes;  ///< on the runs as a whole
 
   [[nodiscard]] std::size_t count(Verdict verdict) const;
-  /// Whether the case speaks against B.
+  /// Whether the case is a failure of B.
   [[nodiscard]] bool fails(const CaseComparison& compared) const;
   /// Whether any case ran on the same recording in both runs.
   [[nodiscard]] bool comparable() const;
-  /// The median drift of the cases, as RunRatio::drift.
+  /// Median of RunRatio::drift over the cases.
   [[nodiscard]] std::optional<double> drift() const;
 };
 
-/// One result file, or several that are judged together.
+/// The results of a file.
 struct NamedResults {
   std::string name;
   Results results;
 };
 
-/// Compares the cases on recordings of the same hash and of the same name; of several with the same
-/// name the k-th with the k-th. Throws InputError for an `options.by` that no case has.
+/// Compares the cases that have the same name and the same hash of the recording; the k-th with the
+/// k-th if there are several. Throws InputError for an `options.by` that no case has.
 Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
                           const ComparisonOptions& options);
 
-/// "ok -> timeout", "1.5 % slower": a verdict in words.
+/// Verdict in words: "ok -> timeout", "1.5 % slower".
 std::string verdictText(const CaseComparison&);
 /// "12 cases: 10 same, 1 faster, 1 REGRESSED; drift +1.3 %"
 std::string summaryText(const Comparison&);
 
-/// One way to write a comparison.
+/// An output format for comparisons.
 struct ComparisonWriter {
-  std::string_view name;  ///< of the command line option, without dashes: "junit"
+  std::string_view name;  ///< name of the command line option, without dashes: "junit"
   std::string_view doc;
   std::string (*format)(const Comparison&);
 };
-/// In the order of the help.
+/// All formats, in the order of the help.
 std::vector<ComparisonWriter> comparisonWriters();
-/// As a table for people.
+/// Formats a human-readable table.
 std::string formatComparison(const Comparison&);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// A comparison as text: a table for people, and files for programs.
+// Formats comparisons: as a human-readable table, and as files for other programs.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ std::vector<std::string> timeCells(const CaseComparison& compared) {
           fmt::format("{:.3f}…{:.3f}", ratio.ratio.ci95.low, ratio.ratio.ci95.high)};
 }
 
-/// What differs beside the times, each once, with how many cases it concerns.
+/// Differences in conditions, without duplicates, each with the number of cases affected.
 std::string conditionsText(const Comparison& comparison) {
   std::map<std::string, std::pair<std::size_t, bool>> found;
   for (const CaseComparison& compared : comparison.cases) {
@@ -117,14 +117,14 @@ std::string csv(const Comparison& comparison) {
   return text;
 }
 
-/// Control characters, which XML has no way to write, become blanks.
+/// Escapes a text for XML. Control characters, which XML cannot represent, become blanks.
 std::string escapedForXml(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
   return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 
-/// Whether nothing can be said of the case.
+/// Whether no judgement of the case is possible.
 bool isSkipped(const CaseComparison& compared) {
   return compared.verdict == Verdict::other_conditions ||
          compared.verdict == Verdict::other_recording || compared.verdict == Verdict::not_timed;
@@ -159,7 +159,7 @@ std::string junit(const Comparison& comparison) {
                             escapedForXml(summaryText(comparison)));
 }
 
-/// A message as workflow commands want it.
+/// Escapes a message for workflow commands.
 std::string escapedForGithub(std::string_view text) {
   return escaped(text, {{'%', "%25"}, {'\n', "%0A"}, {'\r', "%0D"}});
 }

@@ -24,7 +24,7 @@ std::string changeText(double ratio) {
 
 std::string table(const DuelResult& result) {
   std::vector<std::vector<std::string>> rows = {
-      {"", "variant", "median", "least", "ratio to the first named", "95 % interval"}};
+      {"", "variant", "median", "minimum", "ratio to the first named", "95 % interval"}};
   for (const DuelRank& rank : result.ranking) {
     const DuelResult::Side& side = result.sides[rank.side];
     const bool ties = std::ranges::count(result.ranking, rank.rank, &DuelRank::rank) > 1;
@@ -38,16 +38,16 @@ std::string table(const DuelResult& result) {
   return alignColumns(rows, {true, false, true, true, true, true});
 }
 
-/// Of how many rounds had which ratio, in a few lines.
+/// Histogram of the rounds' ratios, in a few lines.
 std::string histogram(const std::vector<double>& ratios) {
   constexpr std::size_t kLines = 9;
-  constexpr std::size_t kWidest = 40;
+  constexpr std::size_t kMaxWidth = 40;
   const Histogram histogram = histogramOf(ratios, kLines);
   std::string text;
   for (std::size_t line = 0; line < histogram.counts.size(); ++line) {
-    const std::size_t most = *std::ranges::max_element(histogram.counts);
+    const std::size_t max = *std::ranges::max_element(histogram.counts);
     text += fmt::format("{:>8.3f} ", histogram.begin(line));
-    for (std::size_t i = 0; i < histogram.counts[line] * kWidest / most; ++i) text += "█";
+    for (std::size_t i = 0; i < histogram.counts[line] * kMaxWidth / max; ++i) text += "█";
     text += fmt::format(" {}\n", histogram.counts[line]);
   }
   return text;
@@ -62,7 +62,7 @@ std::string verdictOnTwo(const DuelResult& result) {
     return fmt::format("{} and {}: the same within {:g} %", a, b, 100 * result.margin);
   }
   if (verdict == Verdict::undecided) {
-    return fmt::format("{} against {}: undecided; more time (--seconds) would tell", b, a);
+    return fmt::format("{} against {}: undecided; needs more time (--max-seconds)", b, a);
   }
   return fmt::format("{} is {} {}", b, changeText(ratio.value), a);
 }
@@ -97,7 +97,7 @@ std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
   std::string text =
       fmt::format("{} {} N{}: {} in {}{}\n", scene.name, scene.object_type, scene.objects,
                   counted(result.rounds(), "round"), waitingTime(result.seconds),
-                  result.decided || !result.ok() ? "" : ", until time was up");
+                  result.decided || !result.ok() ? "" : ", stopped by the time limit");
   if (!result.ok()) return text + failures(result);
   text += table(result);
   if (result.sides.size() == 2) {

@@ -1,4 +1,4 @@
-// What a duel has found, for people and for programs.
+// Reports of a duel: human-readable text, and JSON.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace broadmark {
 
-/// Times, ranking, intervals, and, of two sides, a histogram of the ratios.
+/// Formats times, ranking, intervals and, for two sides, a histogram of the ratios.
 std::string formatDuel(const DuelResult&, const SceneInfo&);
 
-/// "1.012…1.034", or that there were too few rounds for one.
+/// "1.012…1.034", or "too few rounds".
 std::string intervalText(const Interval&, int digits);
 
-/// The fastest side, in one line. The duel must be ok() and have at least one round.
+/// States the fastest side in one line. The duel must be ok() and have at least one round.
 std::string verdictOf(const DuelResult&);
 
-/// All times and ratios as JSON (schema "broadmark-duel/1").
+/// Formats all times and ratios as JSON (schema "broadmark-duel/1").
 std::string duelJson(const DuelResult&, const RecordingReference&);
 
 }  // namespace broadmark

@@ -20,13 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws InputError unless a file holds the same mesh as the first one.
-void requireSame(const MeshTopology& mesh, const fs::path& file, const MeshTopology& first,
-                 const fs::path& first_file) {
-  const auto require = [&](std::size_t has, std::size_t wanted, const char* what) {
-    if (has == wanted) return;
-    throw InputError(fmt::format("{}: {} {}: {} are expected, as in {}", file.string(), has, what,
-                                 wanted, first_file.string()));
+/// Throws InputError unless a file has the same topology as the first one.
+void requireSameTopology(const MeshTopology& mesh, const fs::path& file, const MeshTopology& first,
+                         const fs::path& first_file) {
+  const auto require = [&](std::size_t count, std::size_t expected, const char* what) {
+    if (count == expected) return;
+    throw InputError(fmt::format("{}: {} {}: {} are expected, as in {}", file.string(), count, what,
+                                 expected, first_file.string()));
   };
   require(mesh.vertices, first.vertices, "vertices");
   require(mesh.triangles.size(), first.triangles.size(), "triangles");
@@ -36,7 +36,7 @@ void requireSame(const MeshTopology& mesh, const fs::path& file, const MeshTopol
                                other - mesh.triangles.begin(), first_file.string()));
 }
 
-/// Each edge once, in the order of its vertices.
+/// Returns the edges without duplicates, sorted by their vertices.
 std::vector<std::array<std::uint32_t, 2>> edgesOf(const std::vector<Triangle>& triangles) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const Triangle& triangle : triangles) {
@@ -51,7 +51,7 @@ std::vector<std::array<std::uint32_t, 2>> edgesOf(const std::vector<Triangle>& t
   return edges;
 }
 
-/// What recordings call the bodies.
+/// Object type of the bodies in recordings.
 std::string typeName(std::string elements) {
   if (elements == "all") elements = "elements";
   elements.front() = static_cast<char>(elements.front() - 'a' + 'A');
@@ -68,7 +68,7 @@ class ElementFrames final : public IndexedFrames {
     vertices_.resize(mesh_.vertices);
     std::iota(vertices_.begin(), vertices_.end(), 0U);
     if (hasExtension(files.front(), {".stl"})) joinVertices();
-    chooseElements(options.elements.value);
+    addElements(options.elements.value);
     if (elements_.empty()) {
       throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
                                    files.front().string(), options.elements.value));
@@ -76,9 +76,9 @@ class ElementFrames final : public IndexedFrames {
     if (elements_.size() > std::numeric_limits<std::int32_t>::max()) {
       throw InputError(fmt::format("{}: more than 2^31 - 1 elements", files.front().string()));
     }
-    // Of vertices alone no two share one.
-    const bool neighbours = options.elements.value != "vertices";
-    if (neighbours && options.keep.value == "none") leaveOutNeighbours();
+    // Vertices never share a vertex.
+    const bool has_neighbours = options.elements.value != "vertices";
+    if (has_neighbours && options.keep.value == "none") excludeNeighbours();
     scene_.objects = static_cast<std::uint32_t>(elements_.size());
     scene_.frames = static_cast<std::uint32_t>(frames_ - 1);
     boxes_.resize(elements_.size());
@@ -87,41 +87,41 @@ class ElementFrames final : public IndexedFrames {
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
 
  private:
-  /// The numbers of its vertices, of which some may be the same one.
+  /// Indices of its vertices; repeated for edges and vertices.
   using Element = std::array<std::uint32_t, 3>;
 
   void readFiles(const std::vector<fs::path>& files, double frame_rate) {
-    kept_ = unnamedFile();
+    vertex_file_ = unnamedFile();
     for (const fs::path& file : files) {
-      const PointSink sink = [&](auto points) { keep(points, file); };
+      const PointSink sink = [&](auto points) { addFrame(points, file); };
       MeshTopology mesh = hasExtension(file, {".obj"}) ? readObj(file, sink)
                                                        : readWithAssimp(file, frame_rate, sink);
       if (&file == &files.front()) {
         mesh_ = std::move(mesh);
       } else {
-        requireSame(mesh, file, mesh_, files.front());
+        requireSameTopology(mesh, file, mesh_, files.front());
       }
     }
   }
 
-  void keep(std::span<const Point> points, const fs::path& file) {
-    const auto broken = std::ranges::find_if(points, [](const Point& point) {
+  void addFrame(std::span<const Point> points, const fs::path& file) {
+    const auto invalid = std::ranges::find_if(points, [](const Point& point) {
       return !std::ranges::all_of(point, [](float value) { return std::isfinite(value); });
     });
-    if (broken != points.end()) {
+    if (invalid != points.end()) {
       throw InputError(fmt::format("{}: vertex {} has a coordinate that is no finite 32-bit float",
-                                   file.string(), broken - points.begin()));
+                                   file.string(), invalid - points.begin()));
     }
     if (frames_ > kMaxFrames) throw InputError(fmt::format("more than {} frames", kMaxFrames));
     ++frames_;
-    writeAll(kept_.get(), std::as_bytes(points), "the vertices of a mesh");
+    writeAll(vertex_file_.get(), std::as_bytes(points), "the vertices of a mesh");
     for (const Point& p : points) {
       const Aabb box = {{p[0], p[1], p[2], 0}, {p[0], p[1], p[2], 0}};
       scene_.world = merged(scene_.world, box);
     }
   }
 
-  /// For files in which each triangle has vertices of its own: those at one place are one.
+  /// Joins vertices at the same position, for files with separate vertices per triangle.
   void joinVertices() {
     readPoints(0);
     std::map<Point, std::uint32_t> first_at;
@@ -135,7 +135,7 @@ class ElementFrames final : public IndexedFrames {
     }
   }
 
-  void chooseElements(const std::string& which) {
+  void addElements(const std::string& which) {
     const bool all = which == "all";
     if (all || which == "vertices") {
       for (const std::uint32_t vertex : vertices_) elements_.push_back({vertex, vertex, vertex});
@@ -148,7 +148,7 @@ class ElementFrames final : public IndexedFrames {
     }
   }
 
-  void leaveOutNeighbours() {
+  void excludeNeighbours() {
     std::vector<BodyGroups> groups;
     groups.reserve(elements_.size());
     for (const Element& element : elements_) {
@@ -161,7 +161,7 @@ class ElementFrames final : public IndexedFrames {
   void readPoints(std::uint32_t index) {
     points_.resize(mesh_.vertices);
     const auto bytes = std::as_writable_bytes(std::span(points_));
-    if (readAll(kept_.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
+    if (readAll(vertex_file_.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
       throw InputError(fmt::format("{}: cannot read frame {}", scene_.name, index));
     }
   }
@@ -171,10 +171,9 @@ class ElementFrames final : public IndexedFrames {
     for (std::size_t body = 0; body < boxes_.size(); ++body) {
       const auto& [a, b, c] = elements_[body];
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto [low, high] =
-            std::minmax({points_[a][axis], points_[b][axis], points_[c][axis]});
-        boxes_[body].min[axis] = low;
-        boxes_[body].max[axis] = high;
+        const auto [min, max] = std::minmax({points_[a][axis], points_[b][axis], points_[c][axis]});
+        boxes_[body].min[axis] = min;
+        boxes_[body].max[axis] = max;
       }
     }
     return boxes_;
@@ -182,9 +181,9 @@ class ElementFrames final : public IndexedFrames {
 
   SceneInfo scene_;
   MeshTopology mesh_;
-  std::vector<std::uint32_t> vertices_;  ///< those that count, ascending
+  std::vector<std::uint32_t> vertices_;  ///< distinct vertices, ascending
   std::vector<Element> elements_;        ///< by body
-  FileDescriptor kept_;                  ///< the vertices of all frames, one after the other
+  FileDescriptor vertex_file_;           ///< vertices of all frames, concatenated
   std::uint64_t frames_ = 0;
   std::vector<Point> points_;
   std::vector<Aabb> boxes_;

@@ -1,4 +1,4 @@
-// The boxes of a mesh's elements: its vertices, its edges, its triangles.
+// Boxes of a mesh's elements: vertices, edges, triangles.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace broadmark::imports {
 
-/// A body for each element: vertices in the order of the file, then edges in the order of their
-/// vertices, then triangles in the order of the file, as far as they are asked for. Elements that
-/// share a vertex are not wanted as a pair, unless they are to be kept: the vertices are tags. All
-/// files are the same mesh, each with the frames of its animation or only one. Throws InputError.
+/// Creates a body for each requested element: vertices in file order, edges sorted by their
+/// vertices, then triangles in file order. Pairs of elements that share a vertex are filtered out,
+/// unless kept, with vertices as tags. All files must contain the same mesh, each with an animation
+/// or a single frame. Throws InputError.
 std::unique_ptr<IndexedFrames> openElements(const std::vector<std::filesystem::path>& files,
                                             const ReadingOptions& options);
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> filesLike(const std::string& pattern) {
+std::vector<fs::path> matchingFiles(const std::string& pattern) {
   glob_t found{};
   std::vector<fs::path> files;
   if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
@@ -40,39 +40,39 @@ std::vector<fs::path> filesIn(const std::string& folder,
 }  // namespace
 
 bool hasExtension(const fs::path& path, const std::vector<std::string>& extensions) {
-  const std::string own = path.extension().string();
+  const std::string actual = path.extension().string();
   return std::ranges::any_of(extensions, [&](const std::string& extension) {
-    return ::strcasecmp(extension.c_str(), own.c_str()) == 0;
+    return ::strcasecmp(extension.c_str(), actual.c_str()) == 0;
   });
 }
 
-std::vector<fs::path> filesNamed(const std::string& name,
+std::vector<fs::path> expandName(const std::string& name,
                                  const std::vector<std::string>& extensions) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) return filesIn(name, extensions);
   if (name.find_first_of("*?[") != std::string::npos && !fs::exists(name, ignored)) {
-    return filesLike(name);
+    return matchingFiles(name);
   }
   return {name};
 }
 
-std::vector<fs::path> filesOf(const std::vector<std::string>& names,
-                              const std::vector<std::string>& extensions) {
+std::vector<fs::path> expandNames(const std::vector<std::string>& names,
+                                  const std::vector<std::string>& extensions) {
   std::vector<fs::path> files;
   for (const std::string& name : names) {
-    const auto named = filesNamed(name, extensions);
-    if (named.empty()) {
+    const auto expanded = expandName(name, extensions);
+    if (expanded.empty()) {
       throw InputError(
-          fmt::format("{}: stands for no file; expected: {}", name, fmt::join(extensions, ", ")));
+          fmt::format("{}: matches no file; expected: {}", name, fmt::join(extensions, ", ")));
     }
-    files.insert(files.end(), named.begin(), named.end());
+    files.insert(files.end(), expanded.begin(), expanded.end());
   }
   for (const fs::path& file : files) {
     if (hasExtension(file, extensions)) continue;
-    throw InputError(fmt::format("{}: another kind of file than the first: {} is expected",
+    throw InputError(fmt::format("{}: not the same kind of file as the first: {} is expected",
                                  file.string(), fmt::join(extensions, ", ")));
   }
-  // As versions are compared: numbers by their value.
+  // Natural order: numbers are compared by value.
   std::ranges::stable_sort(files, [](const fs::path& a, const fs::path& b) {
     return ::strverscmp(a.c_str(), b.c_str()) < 0;
   });

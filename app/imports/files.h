@@ -1,4 +1,4 @@
-// The files of a sequence: which ones a name stands for, and what the sequence is called.
+// Files and names of sequences.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,21 @@
 
 namespace broadmark::imports {
 
-/// The files that a name stands for: itself; of a folder those with one of the `extensions`; or
-/// those that fit, if it is a pattern with '*', '?' or '[' in it. In no order. Throws InputError
-/// when a folder cannot be read.
-std::vector<std::filesystem::path> filesNamed(const std::string& name,
+/// Returns the files that a name refers to, in no order: the file itself; the files of a folder
+/// with one of the `extensions`; or the matches of a pattern with '*', '?' or '['. Throws
+/// InputError if a folder cannot be read.
+std::vector<std::filesystem::path> expandName(const std::string& name,
                                               const std::vector<std::string>& extensions);
 
-/// All files that these names stand for, in natural order: frame10 after frame9. Throws InputError
-/// when a name stands for none, or for a file without one of the `extensions`.
-std::vector<std::filesystem::path> filesOf(const std::vector<std::string>& names,
-                                           const std::vector<std::string>& extensions);
+/// Returns all files that these names refer to, in natural order: frame10 after frame9. Throws
+/// InputError for a name without files, or a file without one of the `extensions`.
+std::vector<std::filesystem::path> expandNames(const std::vector<std::string>& names,
+                                               const std::vector<std::string>& extensions);
 
-/// What these files are called together: the first one's name without its number, as a recording
-/// can hold it.
+/// Name of a sequence, valid for recordings: the first file's name without its number.
 std::string sequenceName(const std::vector<std::filesystem::path>& files);
 
-/// Whether `path` has one of the extensions, in upper or lower case.
+/// Whether `path` has one of the extensions, ignoring case.
 bool hasExtension(const std::filesystem::path& path, const std::vector<std::string>& extensions);
 
 }  // namespace broadmark::imports

@@ -17,8 +17,8 @@ namespace broadmark::imports {
 namespace {
 
 constexpr std::string_view kWhiteSpace = " \t\v\f";
-/// A longer line is no line of text.
-constexpr std::size_t kLongestLine = 1 << 20;
+/// Longer lines indicate a binary file.
+constexpr std::size_t kMaxLineLength = 1 << 20;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(kWhiteSpace);
@@ -26,14 +26,14 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kWhiteSpace) + 1 - begin);
 }
 
-/// A word as it can stand in a message.
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  const bool cut = text.size() > kMost;
-  return fmt::format("'{}{}'", onOneLine(std::string(text.substr(0, kMost))), cut ? "…" : "");
+/// Quotes and truncates a word for a message.
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kMaxLength = 40;
+  const bool cut = text.size() > kMaxLength;
+  return fmt::format("'{}{}'", onOneLine(std::string(text.substr(0, kMaxLength))), cut ? "…" : "");
 }
 
-/// The number that the whole text is.
+/// Parses a text that is a number and nothing else.
 template <class Number>
 bool parse(std::string_view text, Number& number) {
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -45,13 +45,13 @@ bool parse(std::string_view text, Number& number) {
 }  // namespace
 
 LineReader::LineReader(const std::filesystem::path& path)
-    : path_(path.string()), buffer_(kLongestLine + 2, '\0') {
+    : path_(path.string()), buffer_(kMaxLineLength + 2, '\0') {
   openForReading(path);  // throws unless it is a regular file
   file_.open(path);
 }
 
 bool LineReader::next() {
-  if (std::exchange(again_, false)) return true;
+  if (std::exchange(unread_, false)) return true;
   file_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   const auto length = static_cast<std::size_t>(file_.gcount());
   if (file_.bad()) {
@@ -72,18 +72,18 @@ void LineReader::require(std::string_view expected) {
   throw InputError(fmt::format("{}: ends after line {}: {} is expected", path_, number_, expected));
 }
 
-LineReader::Position LineReader::place() const {
-  if (again_) return {begin_, number_ - 1};
+LineReader::Position LineReader::position() const {
+  if (unread_) return {begin_, number_ - 1};
   return {begin_ + length_, number_};
 }
 
-void LineReader::seek(Position place) {
+void LineReader::seek(Position position) {
   file_.clear();
-  file_.seekg(static_cast<std::streamoff>(place.offset));
-  begin_ = place.offset;
+  file_.seekg(static_cast<std::streamoff>(position.offset));
+  begin_ = position.offset;
   length_ = 0;
-  number_ = place.lines_before;
-  again_ = false;
+  number_ = position.lines_before;
+  unread_ = false;
 }
 
 void LineReader::fail(std::uint64_t line, std::string_view what) const {
@@ -93,7 +93,7 @@ void LineReader::fail(std::uint64_t line, std::string_view what) const {
 double LineReader::realNumber(std::string_view text, std::string_view what) const {
   double number = 0;
   if (!parse(text, number) || !std::isfinite(number)) {
-    fail(fmt::format("{} is {}: a finite number is expected", what, shown(text)));
+    fail(fmt::format("{} is {}: a finite number is expected", what, quoted(text)));
   }
   return number;
 }
@@ -101,7 +101,7 @@ double LineReader::realNumber(std::string_view text, std::string_view what) cons
 std::int64_t LineReader::integer(std::string_view text, std::string_view what) const {
   std::int64_t number = 0;
   if (!parse(text, number)) {
-    fail(fmt::format("{} is {}: an integer is expected", what, shown(text)));
+    fail(fmt::format("{} is {}: an integer is expected", what, quoted(text)));
   }
   return number;
 }

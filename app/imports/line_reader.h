@@ -1,5 +1,5 @@
-// A text file, line by line, and what stands in a line. Whatever is wrong is an InputError that
-// names the file and the line.
+// Reads a text file line by line, and parses lines. Errors are InputErrors that name the file and
+// the line.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,33 @@ class LineReader {
  public:
   explicit LineReader(const std::filesystem::path& path);
 
-  /// Goes to the next line; false at the end of the file. Carriage returns at its end are left out.
+  /// Reads the next line, without carriage returns at its end. Returns false at the end of the
+  /// file.
   bool next();
-  /// As next(), but throws at the end of the file; `expected` is what would be right.
+  /// Like next(), but throws at the end of the file, stating what is `expected`.
   void require(std::string_view expected);
-  /// Lets next() give this line once more.
-  void again() { again_ = true; }
+  /// Makes next() return the current line again.
+  void unread() { unread_ = true; }
 
-  /// The present line, until the next one is read.
+  /// Current line, valid until the next one is read.
   [[nodiscard]] std::string_view line() const { return line_; }
   [[nodiscard]] std::uint64_t number() const { return number_; }
 
-  /// Where a line begins.
+  /// Start of a line.
   struct Position {
     std::uint64_t offset = 0;
     std::uint64_t lines_before = 0;
   };
-  /// Of the line that next() gives.
-  [[nodiscard]] Position place() const;
-  void seek(Position place);
+  /// Position of the line that next() will return.
+  [[nodiscard]] Position position() const;
+  void seek(Position position);
 
-  /// Throws InputError about the present line.
+  /// Throws InputError about the current line.
   [[noreturn]] void fail(std::string_view what) const { fail(number_, what); }
-  /// The same about another one.
+  /// Same about another line.
   [[noreturn]] void fail(std::uint64_t line, std::string_view what) const;
 
-  /// The number that `text` is. Throws InputError; `what` stands for it.
+  /// Parses a number. Throws InputError, calling the number `what`.
   [[nodiscard]] double realNumber(std::string_view text, std::string_view what) const;
   [[nodiscard]] std::int64_t integer(std::string_view text, std::string_view what) const;
 
@@ -49,17 +50,17 @@ class LineReader {
   std::ifstream file_;
   std::string buffer_;
   std::string_view line_;
-  std::uint64_t begin_ = 0;   ///< of the present line, in the file
-  std::uint64_t length_ = 0;  ///< of the present line, with its end
+  std::uint64_t begin_ = 0;   ///< offset of the current line in the file
+  std::uint64_t length_ = 0;  ///< of the current line, including its end
   std::uint64_t number_ = 0;
-  bool again_ = false;
+  bool unread_ = false;
 };
 
-/// Whether there is nothing but white space.
+/// Whether a line contains only white space.
 bool isBlank(std::string_view line);
-/// What stands between white space in a line.
+/// Splits a line at white space.
 void splitWords(std::string_view line, std::vector<std::string_view>& words);
-/// The parts of a line between separators, without white space around them.
+/// Splits a line at separators, and removes white space around the parts.
 void splitCells(char separator, std::string_view line, std::vector<std::string_view>& cells);
 
 }  // namespace broadmark::imports

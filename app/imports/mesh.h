@@ -1,4 +1,4 @@
-// Meshes from files: vertices that move, and triangles that keep theirs.
+// Meshes from files: moving vertices, and triangles that do not change.
 #pragma once
 
 #include <array>
@@ -14,25 +14,25 @@ namespace broadmark::imports {
 using Point = std::array<float, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// What does not change in a mesh. Vertices have the numbers that the file gives them; polygons are
-/// cut into triangles.
+/// The part of a mesh that does not change. Vertices are numbered as in the file; polygons are
+/// triangulated.
 struct MeshTopology {
   std::uint32_t vertices = 0;
   std::vector<Triangle> triangles;
 };
 
-/// Gets the vertices of one frame after the other.
+/// Receives the vertices of each frame, in order.
 using PointSink = std::function<void(std::span<const Point>)>;
 
-// What reads a mesh from a file: the frames of its animation, or its only one. Every triangle has
-// vertices that exist.
+// Readers of mesh files: they read all frames of an animation, or the only frame. The vertices of
+// all triangles exist.
 
-/// A Wavefront OBJ file. Assimp gives each corner of a face a vertex of its own: then no two faces
-/// would share one. Throws InputError.
+/// Reads a Wavefront OBJ file. Does not use assimp, which creates separate vertices for each corner
+/// of a face, so that no two faces would share one. Throws InputError.
 MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink);
 
-/// A file that assimp reads, at `frame_rate` frames per second. A child process reads it, as
-/// damaged files may crash assimp or exhaust the memory. Throws InputError.
+/// Reads a file with assimp, at `frame_rate` frames per second, in a child process, as damaged
+/// files may crash assimp or exhaust the memory. Throws InputError.
 MeshTopology readWithAssimp(const std::filesystem::path& file, double frame_rate,
                             const PointSink& sink);
 

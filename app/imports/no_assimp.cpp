@@ -1,4 +1,4 @@
-// Stands for assimp where that is left out.
+// Replaces assimp.cpp in builds without assimp.
 
 #include <fmt/format.h>
 

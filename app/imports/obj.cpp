@@ -1,5 +1,5 @@
-// Wavefront OBJ: 'v x y z' is a vertex, 'f a b c…' a face. Its corners are numbers of vertices,
-// from 1, or from the last one backwards if negative; what follows a slash is of no concern here.
+// Wavefront OBJ: 'v x y z' is a vertex, 'f a b c…' a face. Corners of a face are vertex numbers,
+// counted from 1, or backwards from the last vertex if negative; text after a slash is ignored.
 
 #include <fmt/format.h>
 
@@ -27,11 +27,11 @@ class ObjReader {
   std::vector<Point> points;
 
  private:
-  /// A line and those that continue it, as each but the last ends with a backslash.
+  /// Reads a line with its continuation lines: a backslash at the end continues a line.
   bool nextLine() {
     if (!lines_.next()) return false;
     line_ = lines_.line();
-    while (line_.ends_with('\\') && line_.size() < kLongest && lines_.next()) {
+    while (line_.ends_with('\\') && line_.size() < kMaxLineLength && lines_.next()) {
       line_.back() = ' ';
       line_ += lines_.line();
     }
@@ -52,11 +52,11 @@ class ObjReader {
   void addFace() {
     if (words_.size() < 4) lines_.fail("a face has three vertices or more");
     const std::uint32_t first = vertex(words_[1]);
-    std::uint32_t before = vertex(words_[2]);
+    std::uint32_t previous = vertex(words_[2]);
     for (std::size_t i = 3; i < words_.size(); ++i) {
       const std::uint32_t next = vertex(words_[i]);
-      mesh.triangles.push_back({first, before, next});
-      before = next;
+      mesh.triangles.push_back({first, previous, next});
+      previous = next;
     }
   }
 
@@ -70,7 +70,7 @@ class ObjReader {
     return static_cast<std::uint32_t>(index);
   }
 
-  static constexpr std::size_t kLongest = 1 << 20;
+  static constexpr std::size_t kMaxLineLength = 1 << 20;
   static constexpr std::size_t kMaxVertices = (std::size_t{1} << 31) - 1;
 
   LineReader lines_;

@@ -13,22 +13,22 @@
 namespace broadmark::imports {
 namespace {
 
-constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-// The float nearest to a number on its one side.
+// The nearest float that is not above, or not below, a number.
 float floatBelow(double value) {
   const auto near = static_cast<float>(value);
-  return near > value ? std::nextafter(near, -kLargest) : near;
+  return near > value ? std::nextafter(near, -kMaxFloat) : near;
 }
 float floatAbove(double value) {
   const auto near = static_cast<float>(value);
-  return near < value ? std::nextafter(near, kLargest) : near;
+  return near < value ? std::nextafter(near, kMaxFloat) : near;
 }
 
 Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius) {
   Aabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::abs(centre[axis]) + radius > kLargest) {
+    if (std::abs(centre[axis]) + radius > kMaxFloat) {
       reader.fail(fmt::format("{:g} is beyond what 32-bit floats hold", centre[axis]));
     }
     box.min[axis] = floatBelow(centre[axis] - radius);
@@ -57,81 +57,81 @@ class TextFrames final : public IndexedFrames {
     for (std::size_t file = 0; file < files.size(); ++file) scan(file);
     if (isEmpty(scene_.world)) scene_.world = {};
     scene_.objects = static_cast<std::uint32_t>(ids_.size());
-    scene_.frames = static_cast<std::uint32_t>(places_.size() - 1);
+    scene_.frames = static_cast<std::uint32_t>(locations_.size() - 1);
     boxes_.resize(ids_.size());
   }
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
 
  private:
-  /// Where a frame is.
-  struct FramePlace {
+  /// Location of a frame.
+  struct FrameLocation {
     std::size_t file = 0;
-    LineReader::Position place;
-    bool empty = false;  ///< no coordinates: the element is absent
+    LineReader::Position position;
+    bool empty = false;  ///< skipped frame number: all bodies are absent
   };
 
   void scan(std::size_t file) {
     LineReader lines(files_[file]);
-    const std::size_t before = places_.size();
+    const std::size_t before = locations_.size();
     while (true) {
-      const FramePlace place{.file = file, .place = lines.place()};
+      const FrameLocation location{.file = file, .position = lines.position()};
       if (!readNext(lines)) break;
-      add(lines, place);
-      count(lines);
+      addFrame(lines, location);
+      addBodies(lines);
     }
-    if (places_.size() == before) {
+    if (locations_.size() == before) {
       throw InputError(fmt::format("{}: holds no frame", files_[file].string()));
     }
   }
 
-  /// Into frame_; false at the end of the file.
+  /// Reads a frame into frame_. Returns false at the end of the file.
   bool readNext(LineReader& lines) {
     frame_.number.reset();
     frame_.rows.clear();
     return format_(lines, frame_);
   }
 
-  void add(const LineReader& lines, FramePlace place) {
-    std::uint64_t left_out = 0;
+  void addFrame(const LineReader& lines, FrameLocation location) {
+    std::uint64_t skipped = 0;
     if (frame_.number && last_number_) {
       if (*frame_.number <= *last_number_) {
         lines.fail(frame_.rows.front().line,
-                   fmt::format("frame {} after frame {}: frames must stand in their order",
+                   fmt::format("frame {} after frame {}: frames must be in ascending order",
                                *frame_.number, *last_number_));
       }
-      left_out = static_cast<std::uint64_t>(*frame_.number) -
-                 static_cast<std::uint64_t>(*last_number_) - 1;
+      skipped = static_cast<std::uint64_t>(*frame_.number) -
+                static_cast<std::uint64_t>(*last_number_) - 1;
     }
     last_number_ = frame_.number;
-    if (left_out >= kMaxFrames || places_.size() + left_out > kMaxFrames) {
+    if (skipped >= kMaxFrames || locations_.size() + skipped > kMaxFrames) {
       lines.fail(frame_.rows.empty() ? lines.number() : frame_.rows.front().line,
                  fmt::format("more than {} frames", kMaxFrames));
     }
-    if (left_out > 0) scene_.all_present = false;
-    places_.resize(places_.size() + left_out, FramePlace{.empty = true});
-    places_.push_back(place);
+    if (skipped > 0) scene_.all_present = false;
+    locations_.resize(locations_.size() + skipped, FrameLocation{.empty = true});
+    locations_.push_back(location);
   }
 
-  /// Counts the elements of a frame.
-  void count(const LineReader& lines) {
+  /// Adds the new bodies of a frame, and extends the world.
+  void addBodies(const LineReader& lines) {
     std::vector<TextRow>& rows = frame_.rows;
     if (!std::ranges::is_sorted(rows, {}, &TextRow::id)) {
       std::ranges::stable_sort(rows, {}, &TextRow::id);
     }
-    const auto twin = std::ranges::adjacent_find(rows, {}, &TextRow::id);
-    if (twin != rows.end()) {
-      lines.fail(std::next(twin)->line,
-                 fmt::format("{} is already in this frame, in line {}", twin->id, twin->line));
+    const auto duplicate = std::ranges::adjacent_find(rows, {}, &TextRow::id);
+    if (duplicate != rows.end()) {
+      lines.fail(std::next(duplicate)->line, fmt::format("{} is already in this frame, in line {}",
+                                                         duplicate->id, duplicate->line));
     }
     for (const TextRow& row : rows) scene_.world = merged(scene_.world, row.box);
     const auto same_id = [](const TextRow& row, std::int64_t id) { return row.id == id; };
     if (std::ranges::equal(rows, ids_, same_id)) return;
-    if (places_.size() > 1) scene_.all_present = false;
+    if (locations_.size() > 1) scene_.all_present = false;
     std::vector<std::int64_t> all;
-    std::vector<std::int64_t> here;
-    for (const TextRow& row : rows) here.push_back(row.id);
-    std::ranges::set_union(ids_, here, std::back_inserter(all));
+    std::vector<std::int64_t> present;
+    for (const TextRow& row : rows) present.push_back(row.id);
+    std::ranges::set_union(ids_, present, std::back_inserter(all));
     if (all.size() > std::numeric_limits<std::int32_t>::max())
       lines.fail("more bodies than 2^31 - 1");
     ids_ = std::move(all);
@@ -144,11 +144,11 @@ class TextFrames final : public IndexedFrames {
   }
 
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
-    const FramePlace& at = places_[index];
+    const FrameLocation& location = locations_[index];
     std::ranges::fill(boxes_, kEmptyBox);
-    if (at.empty) return boxes_;
-    LineReader& lines = reader(at.file);
-    lines.seek(at.place);
+    if (location.empty) return boxes_;
+    LineReader& lines = reader(location.file);
+    lines.seek(location.position);
     if (!readNext(lines)) lines.fail("the file has changed: its frames are no longer there");
     for (const TextRow& row : frame_.rows) {
       const auto body = std::ranges::lower_bound(ids_, row.id);
@@ -161,12 +161,12 @@ class TextFrames final : public IndexedFrames {
   std::vector<std::filesystem::path> files_;
   TextFormat format_;
   SceneInfo scene_;
-  std::vector<FramePlace> places_;
+  std::vector<FrameLocation> locations_;
   std::vector<std::int64_t> ids_;  ///< ascending, by body
   std::optional<LineReader> reader_;
   std::size_t reader_file_ = 0;
   TextFrame frame_;
-  std::optional<std::int64_t> last_number_;  ///< of the frame before
+  std::optional<std::int64_t> last_number_;  ///< of the previous frame
   std::vector<Aabb> boxes_;
 };
 

@@ -1,4 +1,4 @@
-// The original's ids, restated from its source.
+// Algorithm ids of the original Broadmark, copied from its source code.
 
 #include "original/ids.h"
 

@@ -1,4 +1,4 @@
-// The ids by which the original Broadmark calls its algorithms.
+// Algorithm ids of the original Broadmark.
 #pragma once
 
 #include <optional>
@@ -10,15 +10,15 @@
 namespace broadmark {
 
 struct OriginalId {
-  std::string_view name;        ///< there: "BF_SSE"
-  std::string_view algorithm;   ///< our id: "bf-simd"
-  std::optional<Isa> isa = {};  ///< the instruction set that the name states
+  std::string_view name;        ///< in the original: "BF_SSE"
+  std::string_view algorithm;   ///< id in this program: "bf-simd"
+  std::optional<Isa> isa = {};  ///< instruction set stated by the name
 };
 
-/// All of them.
+/// All ids of the original.
 std::span<const OriginalId> originalIds();
 
-/// Finds an id by name; null if there is none.
+/// Returns the id with this name, or null.
 const OriginalId* findOriginalId(std::string_view name);
 
 }  // namespace broadmark

@@ -7,7 +7,7 @@
 namespace broadmark {
 namespace {
 
-/// The margin lives in its own object {x, y, z}.
+/// Reads the margin from its object {x, y, z}.
 std::array<double, 3> marginFrom(const JsonFields& json, std::array<double, 3> margin) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -16,9 +16,9 @@ std::array<double, 3> marginFrom(const JsonFields& json, std::array<double, 3> m
   return margin;
 }
 
-/// Every integer key with the field it is kept in, for reading and writing alike.
+/// Visits every integer key with its field, for both reading and writing.
 template <class Settings, class Visit>
-void eachInteger(Settings& settings, Visit&& visit) {
+void visitIntegers(Settings& settings, Visit&& visit) {
   visit("m_numThreads", settings.threads);
   visit("m_Grid_ObjectsPerCell", settings.grid_objects_per_cell);
   visit("m_Tracy_ObjectsPerCell", settings.tracy_objects_per_cell);
@@ -26,7 +26,7 @@ void eachInteger(Settings& settings, Visit&& visit) {
   visit("m_GPUSap_KernelType", settings.gpu_sap_kernel_type);
 }
 
-/// The original's names of the phases, in its order.
+/// The original's names of phases, in its order.
 constexpr std::pair<const char*, Phase> kLogPhases[] = {
     {"Total", Phase::total},
     {"UpdateObjects", Phase::update_objects},
@@ -53,7 +53,7 @@ OriginalSettings parseOriginalSettings(std::string_view text, std::string_view n
   if (fields.has("m_margin")) {
     settings.margin = marginFrom(fields.object("m_margin"), settings.margin);
   }
-  eachInteger(settings, [&](const char* key, std::int64_t& value) {
+  visitIntegers(settings, [&](const char* key, std::int64_t& value) {
     if (fields.has(key)) value = fields.integer<std::int64_t>(key, 0);
   });
   return settings;
@@ -67,7 +67,7 @@ std::string formatOriginalLog(const OriginalSettings& settings, const CaseResult
       {"m_algorithm_prettyName", settings.pretty_name},
       {"m_margin",
        {{"x", settings.margin[0]}, {"y", settings.margin[1]}, {"z", settings.margin[2]}}}};
-  eachInteger(settings, [&](const char* key, std::int64_t value) { header[key] = value; });
+  visitIntegers(settings, [&](const char* key, std::int64_t value) { header[key] = value; });
   header["m_numberOfObjects"] = result.recording.scene.objects;
 
   Json frames = Json::array();

@@ -1,4 +1,4 @@
-// The settings files and logs of the original Broadmark.
+// Settings files and logs of the original Broadmark.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace broadmark {
 
-/// A settings file with the original's keys and defaults; unknown keys are ignored as there.
+/// Settings with the original's keys and defaults; unknown keys are ignored, as in the original.
 struct OriginalSettings {
   std::string input_scene;
   std::string output_log;
@@ -24,14 +24,14 @@ struct OriginalSettings {
   std::int64_t gpu_sap_kernel_type = 5;
 };
 
-/// Whether a JSON text is such a file. Throws InputError if it is not JSON; `name` stands for it in
-/// messages.
+/// Whether a JSON text is a settings file. Throws InputError, calling the text `name`, if it is not
+/// JSON.
 bool isOriginalSettings(std::string_view json, std::string_view name);
 
-/// Throws InputError naming `name`, the key and what would be right.
+/// Parses a settings file. Throws InputError that states `name`, the key and what is expected.
 OriginalSettings parseOriginalSettings(std::string_view json, std::string_view name);
 
-/// The log in the original's structure: its settings with m_numberOfObjects, then seconds per phase
+/// Formats a log like the original's: the settings with m_numberOfObjects, then seconds per phase
 /// for each frame of the first repetition.
 std::string formatOriginalLog(const OriginalSettings&, const CaseResult&);
 

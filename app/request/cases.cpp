@@ -1,4 +1,4 @@
-// Selecting algorithms and making cases of them.
+// Selects algorithms and creates cases from them.
 
 #include "request/cases.h"
 
@@ -22,19 +22,19 @@
 namespace broadmark {
 namespace {
 
-/// Whether `selector` names `algorithm`, one of `known`.
+/// Whether `selector` matches `algorithm`, one of `known`.
 bool selects(const std::string& selector, const Algorithm& algorithm,
              const std::vector<Algorithm>& known) {
   if (selector == "all") return algorithm.traits.finds_pairs;
   if (globMatches(selector, algorithm.id)) return true;
-  // An id is that algorithm alone, even where a whole family is called the same ("sap").
+  // An id selects only its algorithm, even if a family has the same name ("sap").
   return findAlgorithm(selector, known) == nullptr &&
          ::strcasecmp(selector.c_str(), algorithm.family.c_str()) == 0;
 }
 
-/// A key of --param: the parameter, and its algorithms.
+/// A key of --param: [ALGORITHM:]NAME.
 struct ParameterKey {
-  std::string selector;  ///< of algorithms; "": of anything that has it
+  std::string selector;  ///< of algorithms; "": all with this parameter
   std::string parameter;
 };
 
@@ -44,71 +44,71 @@ ParameterKey parseKey(const std::string& key) {
   return {key.substr(0, colon), key.substr(colon + 1)};
 }
 
-/// An id of the original as the id that it stands for; anything else as it is.
-std::string ownSelector(const std::string& selector, const std::vector<Algorithm>& known) {
+/// Translates an id of the original Broadmark to ours; returns other selectors unchanged.
+std::string translatedSelector(const std::string& selector, const std::vector<Algorithm>& known) {
   const OriginalId* original = findOriginalId(selector);
-  const Algorithm* own = original == nullptr ? nullptr : findAlgorithm(original->algorithm, known);
-  return own == nullptr ? selector : own->id;
+  const Algorithm* ours = original == nullptr ? nullptr : findAlgorithm(original->algorithm, known);
+  return ours == nullptr ? selector : ours->id;
 }
 
-/// Those of the parameters that are for an algorithm, by their own names. What is given for it
-/// alone wins over what is given for all.
+/// Returns the parameters that apply to an algorithm, by unqualified name. Qualified keys take
+/// precedence.
 ParameterValues parametersOf(const Algorithm& algorithm, const ParameterValues& given,
                              const std::vector<Algorithm>& known) {
-  ParameterValues own;
-  std::map<std::string, std::string> stated;  // parameter to key
+  ParameterValues values;
+  std::map<std::string, std::string> qualified;  // parameter to key
   for (const auto& [key, text] : given) {
     const auto [selector, parameter] = parseKey(key);
     if (selector.empty()) {
-      if (!stated.contains(parameter)) own[parameter] = text;
-    } else if (selects(ownSelector(selector, known), algorithm, known)) {
-      const auto [other, first] = stated.emplace(parameter, key);
+      if (!qualified.contains(parameter)) values[parameter] = text;
+    } else if (selects(translatedSelector(selector, known), algorithm, known)) {
+      const auto [other, first] = qualified.emplace(parameter, key);
       if (!first) {
         throw InputError(fmt::format("--param: '{}' and '{}' both set {} of {}", other->second, key,
                                      parameter, algorithm.id));
       }
-      own[parameter] = text;
+      values[parameter] = text;
     }
   }
-  return applicableValues(*algorithm.create(), own);
+  return applicableValues(*algorithm.create(), values);
 }
 
-/// Throws InputError unless `key`, which names algorithms, sets a parameter of one of the `cases`.
+/// Throws InputError unless the qualified `key` sets a parameter of one of the `cases`.
 void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
                     const std::vector<Algorithm>& known) {
   const auto [selector, parameter] = parseKey(key);
   const std::vector<Algorithm> named =
-      selectAlgorithms({ownSelector(selector, known)}, known, "--param");
+      selectAlgorithms({translatedSelector(selector, known)}, known, "--param");
   std::vector<std::string> parameters;
-  bool any = false;
+  bool is_selected = false;
   for (const Case& test_case : cases) {
     if (findAlgorithm(test_case.algorithm.id, named) == nullptr) continue;
-    any = true;
+    is_selected = true;
     std::ranges::move(parameterNames(*test_case.algorithm.create()),
                       std::back_inserter(parameters));
   }
-  if (!any) {
+  if (!is_selected) {
     throw InputError(
         fmt::format("--param: '{}': no selected case uses algorithm '{}'", key, selector));
   }
   requireKnownParameters({{parameter, ""}}, std::move(parameters));
 }
 
-/// Takes over a part of a case's name: "avx2", "t4", "margin=0.1". Throws InputError.
-void takeCasePart(Case& made, const std::string& part, const std::string& name) {
-  const AlgorithmTraits& traits = made.algorithm.traits;
+/// Applies a part of a case's name: "avx2", "t4", "margin=0.1". Throws InputError.
+void applyNamePart(Case& test_case, const std::string& part, const std::string& name) {
+  const AlgorithmTraits& traits = test_case.algorithm.traits;
   const auto isa = kIsas.find(part);
   const auto answer = kAnswerKinds.find(part);
   const std::size_t equals = part.find('=');
   if (isa && traits.vectorised) {
-    made.isa = *isa;
+    test_case.isa = *isa;
   } else if (answer) {
-    made.answer = *answer;
+    test_case.answer = *answer;
   } else if (equals != std::string::npos && equals > 0) {
-    made.parameters[currentParameterKey(part.substr(0, equals))] = part.substr(equals + 1);
+    test_case.parameters[currentParameterKey(part.substr(0, equals))] = part.substr(equals + 1);
   } else if (part.size() > 1 && part[0] == 't' && part[1] >= '0' && part[1] <= '9' &&
              traits.parallel) {
-    made.threads = parseThreadCount(part.substr(1));
+    test_case.threads = parseThreadCount(part.substr(1));
   } else {
     throw InputError(fmt::format(
         "'{}': '{}' is not {}{}an answer ({}), KEY=VALUE", name, part,
@@ -174,19 +174,19 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   const std::vector<Isa> isas = options.isas.empty() ? std::vector{bestIsa()} : options.isas;
   std::vector<Case> cases;
   const auto add = [&](const Algorithm& algorithm, Isa isa, int count) {
-    const ParameterValues own = parametersOf(algorithm, parameters, known);
-    for (ParameterValues& values : combinations(*algorithm.create(), own)) {
-      Case made =
+    const ParameterValues texts = parametersOf(algorithm, parameters, known);
+    for (ParameterValues& values : combinations(*algorithm.create(), texts)) {
+      Case test_case =
           makeCase(algorithm, isa, count, options.device, std::move(values), options.answer);
-      if (std::ranges::find(cases, caseName(made), caseName) == cases.end()) {
-        cases.push_back(std::move(made));
+      if (std::ranges::find(cases, caseName(test_case), caseName) == cases.end()) {
+        cases.push_back(std::move(test_case));
       }
     }
   };
 
   std::vector<std::string> selectors;
   for (const std::string& selector : options.algorithms) {
-    // The original's ids state an instruction set of their own.
+    // The original's ids include an instruction set.
     const OriginalId* original = findOriginalId(selector);
     const Algorithm* algorithm =
         original == nullptr ? nullptr : findAlgorithm(original->algorithm, known);
@@ -205,8 +205,8 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   return cases;
 }
 
-/// How much of a case's name is that of a plug-in: "FILE.so:", or "NAME:" of one of ours.
-static std::size_t lengthOfPlugin(const std::string& name) {
+/// Length of the plug-in's prefix in a case's name: "FILE.so:", or "NAME:" of an SDK plug-in.
+static std::size_t pluginPrefixLength(const std::string& name) {
   constexpr std::string_view kLibraryEnd = ".so:";
   const auto library = name.find(kLibraryEnd);
   if (library != std::string::npos) return library + kLibraryEnd.size();
@@ -217,16 +217,16 @@ static std::size_t lengthOfPlugin(const std::string& name) {
 }
 
 Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer) {
-  const std::size_t begin = lengthOfPlugin(name);
+  const std::size_t begin = pluginPrefixLength(name);
   std::vector<std::string> plugins;
   if (begin > 0) plugins.push_back(name.substr(0, begin - 1));
   const std::vector<std::string> parts = splitAt('/', name.substr(begin));
   const Algorithm algorithm = requireAlgorithm(parts.front(), availableAlgorithms(plugins));
 
-  Case made = makeCase(algorithm, bestIsa(), allCores(), device, {}, answer);
-  for (std::size_t i = 1; i < parts.size(); ++i) takeCasePart(made, parts[i], name);
-  makeInstance(made);  // throws for bad parameters
-  return made;
+  Case test_case = makeCase(algorithm, bestIsa(), allCores(), device, {}, answer);
+  for (std::size_t i = 1; i < parts.size(); ++i) applyNamePart(test_case, parts[i], name);
+  makeInstance(test_case);  // throws for bad parameters
+  return test_case;
 }
 
 void requireUsedParameters(const ParameterValues& given, const std::vector<Case>& cases,

@@ -1,4 +1,4 @@
-// Which algorithms and cases are meant.
+// Selection of algorithms and cases.
 #pragma once
 
 #include <string>
@@ -10,55 +10,55 @@
 
 namespace broadmark {
 
-/// As many threads as this process has cores.
+/// Number of cores available to this process.
 int allCores();
-/// A number of threads.
+/// Parses a value of --threads. Throws InputError.
 int parseThreadCount(const std::string& text);
 
-/// Which cases to make.
+/// Options that select cases.
 struct CaseOptions {
   std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all
-  std::vector<int> threads;             ///< empty: as many as there are cores
-  std::vector<Isa> isas;                ///< empty: the widest
-  std::string device;                   ///< compute device: "" for the first
+  std::vector<int> threads;             ///< empty: allCores()
+  std::vector<Isa> isas;                ///< empty: the widest supported
+  std::string device;                   ///< compute device; "": the first
   AnswerKind answer = AnswerKind::pairs;
 };
 
-/// The algorithms that the selectors (ids, families, globs, "all") name, each once, in the order of
-/// `known`. What is both an id and a family means the id. Throws InputError, which begins with
-/// `option`, for a selector that names none.
+/// Returns the algorithms that match a selector (ids, families, globs, "all"), without duplicates,
+/// in the order of `known`. A selector that is both an id and a family selects the id. Throws
+/// InputError, prefixed with `option`, for a selector without a match.
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
                                         const std::vector<Algorithm>& known,
                                         std::string_view option);
 
-/// All selected algorithms with all instruction sets and thread counts that they support, without
-/// duplicates; first those selected by an id of the original Broadmark. An algorithm gets the
-/// parameters that it has; a key that names it ("kd:margin", "sap*:margin") wins over others; every
-/// value of a list (sweep.h) makes a case. The values are not checked. Throws InputError as above,
-/// and for a parameter that is set twice.
+/// Returns a case for each selected algorithm, instruction set and thread count that it supports,
+/// without duplicates; those selected by ids of the original Broadmark come first. An algorithm
+/// gets the parameters it has; qualified keys ("kd:margin", "sap*:margin") take precedence; a list
+/// (sweep.h) yields a case per value. Values are not validated. Throws InputError as above, and for
+/// a parameter that is set twice.
 std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
                               const std::vector<Algorithm>& known);
 
-/// The case of this name, as caseName() writes it: "kd-mt/avx2/t4/events/margin=0.1"; an algorithm
-/// of a plug-in has the library's file in front, or the name of one of ours: "libmine.so:my-sweep",
-/// "jolt:jolt-quadtree". What is left out is as wide as the processor, or `answer`. Throws
-/// InputError.
+/// Parses a case name as written by caseName(): "kd-mt/avx2/t4/events/margin=0.1". An algorithm of
+/// a plug-in is prefixed with its library's file or SDK name: "libmine.so:my-sweep",
+/// "jolt:jolt-quadtree". Omitted parts default to the best instruction set, to allCores() and to
+/// `answer`. Throws InputError.
 Case caseNamed(const std::string& name, const std::string& device,
                AnswerKind answer = AnswerKind::pairs);
 
-/// The algorithm of this id, or null.
+/// Returns the algorithm with this id, or null.
 const Algorithm* findAlgorithm(std::string_view id, const std::vector<Algorithm>& known);
-/// The same; throws InputError if there is none.
+/// Same, but throws InputError if there is none.
 const Algorithm& requireAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
 /// All ids, for messages.
 std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known);
 
-/// Throws InputError for a --param that none of these cases has and that is not among `names`,
-/// those of scenes.
+/// Throws InputError for a --param that is neither a parameter of these cases nor among `names`,
+/// the parameters of scenes.
 void requireUsedParameters(const ParameterValues& given, const std::vector<Case>& cases,
                            std::vector<std::string> names, const std::vector<Algorithm>& known);
 
-/// Throws InputError for a --param that is in none of the parameters' `known` names.
+/// Throws InputError for a --param that is not among the `known` names of parameters.
 void requireKnownParameters(const ParameterValues& given, std::vector<std::string> known);
 
 }  // namespace broadmark

@@ -28,7 +28,7 @@ constexpr FormerName kFormerNames[] = {
     {"script", "shown_lane", "shown_algorithm"},
 };
 
-/// The present name; where it differs, one line says so, once.
+/// Returns the current name; prints a note the first time that it differs from the former one.
 std::string renamed(std::string_view former, std::string_view current) {
   static std::set<std::string, std::less<>> reported;
   if (former != current && reported.emplace(former).second) {
@@ -38,8 +38,8 @@ std::string renamed(std::string_view former, std::string_view current) {
 }
 
 std::string currentName(std::string_view command, std::string_view name) {
-  for (const FormerName& known : kFormerNames) {
-    if (known.command == command && known.former == name) return renamed(name, known.current);
+  for (const FormerName& entry : kFormerNames) {
+    if (entry.command == command && entry.former == name) return renamed(name, entry.current);
   }
   return std::string(name);
 }

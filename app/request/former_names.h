@@ -1,5 +1,5 @@
-// Options, parameters and script words by names that they once had: still accepted, with a line
-// that tells the new one.
+// Former names of options, parameters and script words: still accepted, with a note that states the
+// current name.
 #pragma once
 
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace broadmark {
 
-/// The arguments of a command line with the present names of options.
+/// Returns the arguments of a command line with the current names of options.
 std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments);
 
-/// The present name of an option of the main command.
+/// Returns the current name of an option of the main command.
 std::string currentOption(const std::string& option);
 
-/// The present form of a word of a script, or of a value's name with its first part ("lane.sap").
+/// Returns the current form of a word of a script, or of a value's name ("lane.sap").
 std::string currentScriptWord(const std::string& word);
 
-/// The key of --param, [ALGORITHM:]NAME, with the present name of the parameter.
+/// Returns a key of --param, [ALGORITHM:]NAME, with the current name of the parameter.
 std::string currentParameterKey(const std::string& key);
 
 }  // namespace broadmark

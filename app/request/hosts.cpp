@@ -7,23 +7,24 @@
 
 namespace broadmark {
 
-ExecutorFactory hostMaker(const HostOptions& options) {
-  const bool other = !options.program.empty();
-  if (options.in_process && !other) return makeLocalHost;
+ExecutorFactory executorFactory(const HostOptions& options) {
+  const bool is_other_program = !options.program.empty();
+  if (options.in_process && !is_other_program) return makeInProcessExecutor;
   constexpr double kGibibyte = 1 << 30;
   const auto& limit = options.memory_limit_gib;
-  const WorkerOptions worker{
-      // This very program, even if another has taken its name meanwhile.
-      .command = {other ? std::filesystem::absolute(options.program).string() : "/proc/self/exe",
+  const WorkerOptions defaults{
+      // This program, even if its file has been replaced meanwhile.
+      .command = {is_other_program ? std::filesystem::absolute(options.program).string()
+                                   : "/proc/self/exe",
                   "worker"},
       .hard_limit = std::chrono::duration<double>(options.hard_limit_seconds),
       .memory_limit_bytes =
           limit ? static_cast<std::uint64_t>(*limit * kGibibyte) : machineMemory(),
       .pin = options.pin};
-  return [worker](const Case& test_case, CancelQuery cancelled) {
-    WorkerOptions own = worker;
-    own.cancelled = std::move(cancelled);
-    return makeWorkerProcess(test_case, std::move(own));
+  return [defaults](const Case& test_case, CancelQuery cancelled) {
+    WorkerOptions worker = defaults;
+    worker.cancelled = std::move(cancelled);
+    return makeWorkerProcess(test_case, std::move(worker));
   };
 }
 

@@ -1,4 +1,4 @@
-// Where the cases of a run live: in worker processes, which are this program again, or in this one.
+// Where cases run: in worker processes, which are instances of this program, or in this process.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@ namespace broadmark {
 
 struct HostOptions {
   bool in_process = false;
-  std::filesystem::path program;  ///< another build of this program, for the workers; "": this one
+  std::filesystem::path program;  ///< build of this program that workers execute; "": this one
   double hard_limit_seconds = 60;
-  bool pin = false;                        ///< each thread to a core of its own; of workers only
-  std::optional<double> memory_limit_gib;  ///< nothing: as much as the machine has
+  bool pin = false;                        ///< bind each thread of a worker to its own core
+  std::optional<double> memory_limit_gib;  ///< nothing: the machine's memory
 };
 
-ExecutorFactory hostMaker(const HostOptions&);
+ExecutorFactory executorFactory(const HostOptions&);
 
 }  // namespace broadmark

@@ -25,8 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a plug-in of ours lies: beside the program in a build, in the folder of libraries when
-/// installed.
+/// Path of an SDK plug-in: beside the program in a build, in the library folder when installed.
 fs::path fileOf(const std::string& name) {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
@@ -37,38 +36,38 @@ fs::path fileOf(const std::string& name) {
              : (folder / BROADMARK_PLUGIN_FOLDER / (name + ".so")).lexically_normal();
 }
 
-/// Why the last call of the dynamic loader failed, without the path in front.
-std::string reason(const std::string& path) {
+/// Error message of the last call of the dynamic loader, without the leading path.
+std::string loaderError(const std::string& path) {
   const char* text = ::dlerror();
   std::string_view message = text == nullptr ? "unknown" : text;
   if (message.starts_with(path + ": ")) message.remove_prefix(path.size() + 2);
   return std::string(message);
 }
 
-/// The file that is meant by the name of a plug-in of ours, or by a path. Throws InputError for one
+/// Resolves the name of an SDK plug-in, or a path, to a file. Throws InputError for an SDK plug-in
 /// that was not built.
-std::string pluginFile(const std::string& named) {
+std::string pluginFile(const std::string& name_or_path) {
   const std::vector<SdkPlugin> all = sdkPlugins();
-  const auto meant = std::ranges::find(all, named, &SdkPlugin::name);
-  if (meant == all.end()) return named;
-  if (!meant->built) {
+  const auto plugin = std::ranges::find(all, name_or_path, &SdkPlugin::name);
+  if (plugin == all.end()) return name_or_path;
+  if (!plugin->built) {
     throw InputError(
         fmt::format("--plugin: {}: not built: {} was not found when this program was configured "
                     "(find_package({}), see 'Physics SDKs' in the README)",
-                    named, meant->releases, meant->package));
+                    name_or_path, plugin->releases, plugin->package));
   }
-  return fileOf(named).string();
+  return fileOf(name_or_path).string();
 }
 
-/// The library that `named` means, which stays loaded.
-void* load(const std::string& named) {
-  const std::string file = pluginFile(named);
+/// Loads a plug-in, which stays loaded.
+void* load(const std::string& name_or_path) {
+  const std::string file = pluginFile(name_or_path);
   openForReading(file);  // throws unless it is a regular file
   // A path with a slash is not searched for in the loader's directories.
   const std::string path = fs::absolute(file).string();
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
-    throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, reason(path)));
+    throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, loaderError(path)));
   }
   if (::dlsym(library, kAlgorithmPluginSymbol) == nullptr &&
       ::dlsym(library, scenes::kEnginePluginSymbol) == nullptr) {
@@ -80,7 +79,7 @@ void* load(const std::string& named) {
   return library;
 }
 
-/// What the library in `file` exports under this name; null: nothing.
+/// Returns the library's export with this name, or null.
 template <class Entry>
 const Plugin<Entry>* exportOf(const std::string& file, const char* symbol) {
   const auto* plugin = static_cast<const Plugin<Entry>*>(::dlsym(load(file), symbol));
@@ -91,20 +90,20 @@ const Plugin<Entry>* exportOf(const std::string& file, const char* symbol) {
   return plugin;
 }
 
-/// Whether an id can be typed in a list of ids without meaning something else.
+/// Whether an id is unambiguous in a list of ids.
 bool isId(std::string_view id) {
   constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789-_.";
   return !id.empty() && id != "all" && id.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
-/// Says what is wrong with an entry of a plug-in.
+/// Throws InputError about an entry of a plug-in.
 [[noreturn]] void refuse(const std::string& file, std::string_view kind, std::string_view id,
-                         std::string_view what) {
-  throw InputError(fmt::format("--plugin: {}: {} '{}': {}", file, kind, id, what));
+                         std::string_view reason) {
+  throw InputError(fmt::format("--plugin: {}: {} '{}': {}", file, kind, id, reason));
 }
 
-/// Throws InputError for an entry that cannot be chosen or made. `other`: the plug-in of the one
-/// that has the id already, if there is one.
+/// Throws InputError for an entry that cannot be selected or created. `other` is the plug-in of an
+/// existing entry with the same id, or null.
 void requireValid(const std::string& file, std::string_view kind, std::string_view id, bool creates,
                   const std::string* other) {
   if (!isId(id)) {
@@ -118,8 +117,8 @@ void requireValid(const std::string& file, std::string_view kind, std::string_vi
                      other->empty() ? "built in" : "of " + *other));
 }
 
-/// Throws InputError for an engine that cannot be chosen or made, or with a parameter that would
-/// hide a parameter of a scene.
+/// Throws InputError for an engine that cannot be selected or created, or that has a parameter with
+/// the name of a scene's parameter.
 void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
   constexpr std::string_view kKind = "engine";
   const std::string& id = engine.listing.id;
@@ -128,11 +127,11 @@ void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
   const auto instance = engine.create == nullptr ? nullptr : engine.create({});
   requireValid(file, kKind, id, instance != nullptr,
                other == known.end() ? nullptr : &other->plugin);
-  const std::vector<std::string> own = parameterNames(*instance);
+  const std::vector<std::string> names = parameterNames(*instance);
   for (const SceneListing& scene : builtinScenes()) {
-    const std::vector<std::string> taken = parameterNames(*makeSimulation(scene.id));
-    for (const std::string& name : own) {
-      if (std::ranges::find(taken, name) == taken.end()) continue;
+    const std::vector<std::string> reserved = parameterNames(*makeSimulation(scene.id));
+    for (const std::string& name : names) {
+      if (std::ranges::find(reserved, name) == reserved.end()) continue;
       refuse(
           file, kKind, id,
           fmt::format("its parameter '{}' needs another name: scene '{}' has one", name, scene.id));
@@ -149,7 +148,7 @@ PluginBuild buildOf(const Plugin<Algorithm>& plugin, const std::string& file) {
           .unoptimised = !plugin.optimised};
 }
 
-/// Calls add(entry) for what a library exports under this name.
+/// Calls add(entry) for each entry of a plug-in.
 template <class Entry, class Add>
 void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add) {
   try {

@@ -9,26 +9,25 @@
 
 namespace broadmark {
 
-/// A plug-in that comes with the program: physics engines and algorithms of an SDK that is not part
-/// of it.
+/// A plug-in that ships with the program: physics engines and algorithms of an external SDK.
 struct SdkPlugin {
-  std::string name;      ///< "jolt": what --plugin takes
-  std::string package;   ///< "Jolt": what CMake's find_package looks for
-  std::string releases;  ///< "Jolt Physics 5.5": those that are known to do
+  std::string name;      ///< "jolt": argument of --plugin
+  std::string package;   ///< "Jolt": argument of CMake's find_package
+  std::string releases;  ///< "Jolt Physics 5.5": releases known to work
   bool built = false;    ///< false: its SDK was not found when the program was configured
 };
 
-/// All of them, whether built or not.
+/// All SDK plug-ins, built or not.
 std::vector<SdkPlugin> sdkPlugins();
 
-/// The built-in algorithms, then those of the libraries in these files (see broadmark/plugin.h),
-/// which stay loaded until the program ends. Throws InputError for a file that is not such a
-/// library, was built with other headers, or has an algorithm with an invalid or duplicate id.
+/// Returns the built-in algorithms, then those of these libraries (see broadmark/plugin.h), which
+/// stay loaded until the program ends. Throws InputError for a file that is not such a library, was
+/// built with other headers, or has an algorithm with an invalid or duplicate id.
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins);
 
 /// Adds the engines of these libraries to the available ones (see broadmark/scenes/engine_plugin.h)
 /// for the rest of the process. Throws InputError like availableAlgorithms(), and for an engine
-/// with a parameter that a scene has, too.
+/// with a parameter that a scene also has.
 void addEnginesOf(const std::vector<std::string>& plugins);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// How a source's file is read, where there is more than one way.
+// Options for reading the files of a source.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace broadmark {
 
-/// Each is an option of the command line and, unless it has its default, stands in results.
+/// Each is a command line option; results state those that are not at their defaults.
 struct ReadingOptions : Parametrised {
   bool swept = false;
   Choice elements{"triangles", {"vertices", "edges", "triangles", "all"}};
@@ -19,24 +19,23 @@ struct ReadingOptions : Parametrised {
     constexpr double kMaxRadius = 1e30;
     constexpr double kMaxRate = 1e6;
     visit({"swept",
-           "boxes that also hold those of the frame before, rounded outward, as continuous "
-           "collision detection takes them",
+           "extend each box to contain that of the previous frame, too, rounded outward, as for "
+           "continuous collision detection",
            &swept});
-    visit({"elements", "of meshes: what gets a box", &elements});
-    visit(
-        {"keep", "of meshes: pairs that are wanted, too: of elements that share a vertex", &keep});
-    visit({"radius", "of particles; 0: as the file says", &radius, 0, kMaxRadius});
-    visit({"frame_rate", "of animations: frames a second", &frame_rate, 1e-6, kMaxRate});
+    visit({"elements", "meshes: the elements that become boxes", &elements});
+    visit({"keep", "meshes: also report pairs of elements that share a vertex", &keep});
+    visit({"radius", "particles: radius; 0: as stated in the file", &radius, 0, kMaxRadius});
+    visit({"frame_rate", "animations: frames per second", &frame_rate, 1e-6, kMaxRate});
   }
 
-  /// Those that do not have their defaults.
-  [[nodiscard]] ParameterValues stated() {
-    ReadingOptions fresh;
-    return changedValues(parameterValues(*this), fresh);
+  /// Options that are not at their defaults.
+  [[nodiscard]] ParameterValues changed() {
+    ReadingOptions defaults;
+    return changedValues(parameterValues(*this), defaults);
   }
 };
 
-/// "--frame-rate"
+/// Command line option of a parameter: "--frame-rate".
 std::string parameterOption(std::string parameter);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// How often the cases of a recording are run, and in which order.
+// Number and order of the repetitions of a recording's cases.
 #pragma once
 
 #include <chrono>
@@ -15,36 +15,36 @@ struct RepetitionOptions {
   static constexpr int kMinUntilPrecise = 5;
   static constexpr int kMaxUntilPrecise = 100;
 
-  int warmup = 0;              ///< unmeasured repetitions before
-  int most = 1;                ///< and fewest, unless:
-  bool until_precise = false;  ///< a case is repeated until its mean is known well enough
-  double precision = 0.02;     ///< relative width of the mean's interval
-  double max_seconds = 300;    ///< of a recording
+  int warmup = 0;              ///< unmeasured repetitions before the measured ones
+  int max_count = 1;           ///< also the minimum unless until_precise
+  bool until_precise = false;  ///< repeat a case until its mean is precise
+  double precision = 0.02;     ///< relative width of the mean's confidence interval
+  double max_seconds = 300;    ///< per recording
   std::uint64_t order_seed = 1;
 
-  /// Repetitions of a case, with those for warming up.
-  [[nodiscard]] int passes() const { return warmup + most; }
+  /// Maximum repetitions of a case, including warm-up.
+  [[nodiscard]] int passes() const { return warmup + max_count; }
 };
 
-/// Tells for each case of a recording when it has been repeated often enough.
+/// Decides when each case of a recording has been repeated often enough.
 class RepetitionRule {
  public:
-  /// The time begins to run.
+  /// Starts the time limit.
   explicit RepetitionRule(const RepetitionOptions& options) : options_(options) {}
 
   [[nodiscard]] bool isEnough(const CaseResult& result) const;
-  /// How many repetitions are the whole number for a case that is not run any more.
-  [[nodiscard]] int wanted(const CaseResult& result) const;
+  /// Number of repetitions that make a finished case complete.
+  [[nodiscard]] int expected(const CaseResult& result) const;
 
  private:
   using Clock = std::chrono::steady_clock;
 
   const RepetitionOptions& options_;
-  Clock::time_point begin_ = Clock::now();
+  Clock::time_point start_ = Clock::now();
 };
 
-/// The interleaving order of cases: at first as given, then shuffled, so that the after-effects of
-/// a case, such as a warm processor, do not always hit the same successor.
+/// Interleaving order of cases: initially as given, then shuffled, so that after-effects of a case,
+/// such as a warm processor, do not always affect the same successor.
 class TurnOrder {
  public:
   TurnOrder(std::size_t cases, std::uint64_t seed);

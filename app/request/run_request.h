@@ -1,7 +1,7 @@
-// What is to be run: a plain, complete value.
+// A run request: a complete specification of a run, as a plain value.
 //
-// A command line, a file (JSON, docs/run-requests.md), the inspector, the Python package and
-// campaigns each state one. Nothing that runs it looks at the command line.
+// Command lines, JSON files (docs/run-requests.md), the inspector, the Python package and campaigns
+// all create run requests. Code that runs a request does not depend on the command line.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,15 @@
 
 namespace broadmark {
 
-/// What is simulated when a source is a scene or a batch is baked.
+/// Options of simulations: for sources that are scenes, and for baking.
 struct SceneOptions {
   std::vector<std::uint32_t> objects;  ///< numbers of bodies, ascending; empty: the scene's default
   std::vector<std::string> object_types;  ///< empty: the scene's default
-  /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name. A
-  /// text may hold several values (sweep.h).
+  /// Scene parameters with their own options (--frames, --seed, …), by parameter name. A text may
+  /// hold several values (sweep.h).
   ParameterValues parameters;
-  /// Kinds of recordings to keep; the first is run on. Empty: recordingExtension() of the scene.
+  /// Kinds of recordings to write; cases run on the first. Empty: recordingExtension() of the
+  /// scene.
   std::vector<std::string> recorders;
 };
 
@@ -39,22 +40,22 @@ struct PictureOptions {
   GlSource gl = GlSource::automatic;
 };
 
-/// One part of a run that is divided among machines: every `count`-th case from the `index`-th.
+/// Part of a run divided among machines: every `count`-th case, starting with the `index`-th.
 struct Shard {
   int index = 0;
   int count = 1;
 };
 
-/// Where the results of a run go, by the name of the result writer.
+/// Output paths of a run's results, by name of the result writer.
 using ResultPaths = std::map<std::string, std::filesystem::path>;
 
 struct RunRequest {
   std::vector<std::string> sources;
-  std::vector<std::string> plugins;  ///< libraries with more algorithms or engines
+  std::vector<std::string> plugins;  ///< libraries with additional algorithms or engines
   SceneOptions scene;
   ParameterValues parameters;  ///< of algorithms or scenes
   ReadingOptions reading;
-  std::string case_id;  ///< of the results file that is the source; "": none
+  std::string case_id;  ///< case to run of the results file given as source; "": none
 
   CaseOptions cases;
   std::string filter;  ///< regular expression
@@ -63,15 +64,15 @@ struct RunRequest {
   RepetitionOptions repetitions;
   RunPolicy policy;
   HostOptions hosts;
-  bool allow_timeout = false;  ///< a case that crosses a time limit is no failure of the run
+  bool allow_timeout = false;  ///< exceeded time limits do not fail the run
 
   ResultPaths outputs;
-  std::filesystem::path record;      ///< directory for recordings; "": keep none
+  std::filesystem::path record;      ///< directory for simulated recordings; "": none
   std::filesystem::path screenshot;  ///< "": none
   PictureOptions picture;
-  std::optional<std::uint32_t> frame;  ///< of the screenshot, or where the inspector opens
+  std::optional<std::uint32_t> frame;  ///< of the screenshot, or shown first in the inspector
 
-  /// As results tell what was run: arguments that ask for the same.
+  /// Equivalent arguments, as stated in results.
   std::vector<std::string> command_line;
 };
 

@@ -9,14 +9,14 @@
 namespace broadmark {
 namespace {
 
-/// By size, each once, however it is written.
+/// Sorts by value and removes equal numbers, even if written differently.
 void sortNumbers(std::vector<std::string>& texts) {
   std::ranges::stable_sort(texts, {}, numberIn);
-  const auto same = std::ranges::unique(texts, {}, numberIn);
-  texts.erase(same.begin(), same.end());
+  const auto duplicates = std::ranges::unique(texts, {}, numberIn);
+  texts.erase(duplicates.begin(), duplicates.end());
 }
 
-void dropRepeated(std::vector<std::string>& texts) {
+void removeDuplicates(std::vector<std::string>& texts) {
   std::vector<std::string> seen;
   std::erase_if(texts, [&](const std::string& text) {
     if (std::ranges::find(seen, text) != seen.end()) return true;
@@ -42,25 +42,25 @@ std::vector<std::string> valuesIn(const std::string& text) {
   if (std::ranges::all_of(values, [](const auto& value) { return numberIn(value).has_value(); })) {
     sortNumbers(values);
   } else {
-    dropRepeated(values);
+    removeDuplicates(values);
   }
   return values;
 }
 
 std::vector<ParameterValues> combinations(Parametrised& object, const ParameterValues& texts) {
-  std::map<std::string, std::vector<std::string>> several;
+  std::map<std::string, std::vector<std::string>> values_by_name;
   object.visitParameters([&](const Parameter& parameter) {
     const auto text = texts.find(std::string(parameter.name));
     if (text == texts.end() || std::holds_alternative<std::string*>(parameter.value)) return;
-    several[text->first] = valuesIn(text->second);
+    values_by_name[text->first] = valuesIn(text->second);
   });
   std::vector<ParameterValues> all = {texts};
-  for (const auto& [name, values] : several) {
-    std::vector<ParameterValues> longer;
-    for (const ParameterValues& shorter : all) {
-      for (const std::string& value : values) longer.emplace_back(shorter)[name] = value;
+  for (const auto& [name, values] : values_by_name) {
+    std::vector<ParameterValues> extended;
+    for (const ParameterValues& combination : all) {
+      for (const std::string& value : values) extended.emplace_back(combination)[name] = value;
     }
-    all = std::move(longer);
+    all = std::move(extended);
   }
   return all;
 }

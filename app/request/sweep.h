@@ -1,4 +1,4 @@
-// Parameters with several values, as KEY=A,B,C gives them: a case or a recording for each.
+// Parameters with several values, KEY=A,B,C: one case or recording per value.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace broadmark {
 
-/// All texts split at commas, empty parts dropped.
+/// Splits all texts at commas, and drops empty parts.
 std::vector<std::string> splitList(const std::vector<std::string>& texts);
 
-/// The values in `text`, separated by commas, each once: numbers by size, all else in the order
-/// given. A text without any comma is a single value; callers check values.
+/// Returns the comma-separated values in `text` without duplicates: numbers in ascending order,
+/// other values in the given order. Values are not validated.
 std::vector<std::string> valuesIn(const std::string& text);
 
-/// Every combination of the values that `texts` hold; the last name varies fastest. A parameter
-/// that is a text itself, such as a path, has one value, commas included; so has what the object
-/// does not have. The values are not checked.
+/// Returns every combination of the values in `texts`; the last name varies fastest. Parameters of
+/// type string, such as paths, and those that the object lacks have a single value, which may
+/// contain commas. Values are not validated.
 std::vector<ParameterValues> combinations(Parametrised& object, const ParameterValues& texts);
 
-/// " density=0.1 seed=2": what tells recordings of a sweep apart, for their names; "" for none.
+/// " density=0.1 seed=2": suffix for the names of a sweep's recordings; "" without parameters.
 std::string sweptText(const ParameterValues& swept);
 
 }  // namespace broadmark

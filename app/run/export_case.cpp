@@ -1,4 +1,4 @@
-// Exporting a failing case.
+// Exports a failing case.
 
 #include "run/export_case.h"
 
@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A path that is not taken for an option.
-std::string pathWord(const fs::path& path) {
+/// Quotes a path as a shell word that is not parsed as an option.
+std::string quotedPath(const fs::path& path) {
   const std::string text = path.string();
   return shellQuoted(text.starts_with('-') ? "./" + text : text);
 }
 
-/// What is left, in one line.
+/// Describes the shrunk case in one line.
 std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
   return fmt::format("{}: {} of {} ({}): {}", partName(whole),
                      extentText(shrunk.part.bodies.size(), shrunk.part.frames.size() - 1),
@@ -44,12 +44,12 @@ void requireExportable(const fs::path& file, const fs::path& original, const Sce
 }
 
 std::string reproducingCommand(const Case& test_case, const fs::path& recording) {
-  std::string command = "broadmark --headless " + pathWord(recording);
+  std::string command = "broadmark --headless " + quotedPath(recording);
   const auto add = [&](std::string_view option, const std::string& word) {
     command += fmt::format(" {} {}", option, word);
   };
   const Algorithm& algorithm = test_case.algorithm;
-  if (!algorithm.plugin.empty()) add("--plugin", pathWord(algorithm.plugin));
+  if (!algorithm.plugin.empty()) add("--plugin", quotedPath(algorithm.plugin));
   add("--algorithm", shellQuoted(algorithm.id));
   if (algorithm.traits.vectorised) add("--isa", std::string(isaName(test_case.isa)));
   if (algorithm.traits.parallel) add("--threads", fmt::format("{}", test_case.threads));
@@ -63,12 +63,12 @@ std::string reproducingCommand(const Case& test_case, const fs::path& recording)
   return command;
 }
 
-std::string torturingCommand(const Case& test_case, const fs::path& recording) {
+std::string tortureCommand(const Case& test_case, const fs::path& recording) {
   const std::string plugin =
       test_case.algorithm.plugin.empty() ? "" : test_case.algorithm.plugin + ":";
   return fmt::format("broadmark torture {} --only-sources --case {} --rounds 1 --output {}",
-                     pathWord(recording), shellQuoted(plugin + caseName(test_case)),
-                     pathWord(recording.parent_path() / "again"));
+                     quotedPath(recording), shellQuoted(plugin + caseName(test_case)),
+                     quotedPath(recording.parent_path() / "again"));
 }
 
 int runExportCase(Plan plan, const fs::path& file, bool quiet) {
@@ -94,15 +94,15 @@ int runExportCase(Plan plan, const fs::path& file, bool quiet) {
              progress.update(size - std::min<std::uint64_t>(size, now.bodies * now.frames));
            },
        .cancelled = InterruptGuard::requested,
-       .make_host = hostMaker(plan.request.hosts)});
+       .make_executor = executorFactory(plan.request.hosts)});
   if (shrunk.trials == 0) throw Interrupted();
   if (shrunk.minimal) progress.update(size);
 
-  writePart(file, *recording, shrunk.part);
+  writeSelection(file, *recording, shrunk.part);
   progress.print(summaryOf(shrunk, whole));
   progress.print("written: " + file.string());
   progress.print(reproducingCommand(test_case, file));
-  if (!shrunk.minimal) throw Interrupted("the smallest part so far is written");
+  if (!shrunk.minimal) throw Interrupted("the smallest recording so far is written");
   return 0;
 }
 

@@ -1,4 +1,4 @@
-// What a run tells and writes beside its results: progress, tables, pictures, the original's logs.
+// Output of a run besides its results: progress, tables, pictures, the original's logs.
 
 #include "run/headless.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reports a plan on the terminal while it is run.
+/// Reports a running plan on the terminal.
 class HeadlessRun final : public TerminalTasks<RunObserver> {
  public:
   HeadlessRun(const RunRequest& request, bool quiet) : TerminalTasks(quiet), request_(request) {}
@@ -40,8 +40,7 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
     if (!entry.screenshot.empty()) draw(recording, oracle, entry.screenshot);
   }
 
-  /// Prints the results that go to standard output, and says what has been written. Returns the
-  /// exit status. Throws Interrupted.
+  /// Prints the names of the written files. Returns the exit status. Throws Interrupted.
   int finish(const Results& results) {
     end();
     if (!request_.record.empty()) written_.push_back(request_.record);
@@ -56,10 +55,10 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
     if (!results.complete || InterruptGuard::requested()) {
       throw Interrupted(fmt::format("{} kept", counted(results.cases.size(), "finished case")));
     }
-    std::vector<Status> judged;
-    for (const CaseResult& result : results.cases) judged.push_back(result.status);
-    if (request_.allow_timeout) std::erase(judged, Status::timeout);
-    const int status = exitStatusOf(judged);
+    std::vector<Status> statuses;
+    for (const CaseResult& result : results.cases) statuses.push_back(result.status);
+    if (request_.allow_timeout) std::erase(statuses, Status::timeout);
+    const int status = exitStatusOf(statuses);
     return picture_failed_ && status != exit_status::wrong_answer ? exit_status::bad_input : status;
   }
 
@@ -80,36 +79,36 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
   }
 
   const RunRequest& request_;
-  /// Results go to standard output: then nothing else does.
+  /// Whether results go to standard output, and therefore nothing else.
   const bool prints_results_ = std::ranges::any_of(
       request_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   bool picture_failed_ = false;
   std::vector<fs::path> written_;
 };
 
-/// One name for a file, whatever it is called; the given one where there is none, as for a pipe.
-fs::path oneName(const fs::path& path) {
+/// Canonical path of a file; the path itself if there is none, as for a pipe.
+fs::path canonicalPath(const fs::path& path) {
   if (isStandardOutput(path)) return "-";
   std::error_code failed;
-  fs::path name = fs::weakly_canonical(path, failed);
-  return failed ? path : name;
+  fs::path canonical = fs::weakly_canonical(path, failed);
+  return failed ? path : canonical;
 }
 
-/// Fails now rather than after a long run: a file cannot be written, or would overwrite a source or
-/// another file of this run.
+/// Throws InputError if an output file cannot be written, or would overwrite a source or another
+/// output, to fail before a long run.
 void requireWritable(const Plan& plan) {
-  std::map<fs::path, std::string> taken;
+  std::map<fs::path, std::string> used_by;
   for (const PlanEntry& entry : plan.entries) {
-    // The file, not the user, names this path.
+    // The settings file, not the user, chooses this path.
     if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
     const Source& source = entry.source;
     const fs::path file =
         source.simulation ? source.simulation->input() : fs::path(source.reference.path);
-    if (!file.empty()) taken[oneName(file)] = "a source";
+    if (!file.empty()) used_by[canonicalPath(file)] = "a source";
   }
   const auto require = [&](const std::string& option, const fs::path& path) {
-    const auto [other, free] = taken.emplace(oneName(path), option);
-    if (!free) {
+    const auto [other, is_free] = used_by.emplace(canonicalPath(path), option);
+    if (!is_free) {
       throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
                                    path.string(), other->second));
     }
@@ -125,12 +124,12 @@ void requireWritable(const Plan& plan) {
 }  // namespace
 
 int runHeadless(Plan plan, bool quiet) {
-  if (plan.entries.empty()) throw InputError("no case is left to run after --filter and --shard");
+  if (plan.entries.empty()) throw InputError("no cases left to run after --filter and --shard");
   requireWritable(plan);
   if (!plan.request.record.empty()) makeDirectory(plan.request.record);
   const InterruptGuard guard;
-  HeadlessRun run(plan.request, quiet);
-  return run.finish(runPlan(plan, hostMaker(plan.request.hosts), run));
+  HeadlessRun headless(plan.request, quiet);
+  return headless.finish(runPlan(plan, executorFactory(plan.request.hosts), headless));
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// From a request to a plan.
+// Resolves a request into a plan.
 
 #include "run/plan.h"
 
@@ -17,7 +17,7 @@
 namespace broadmark {
 namespace {
 
-/// Opens a source; its entries get the plan's cases later.
+/// Opens a source and adds its entries, before the plan's cases are added to them.
 void addSource(Plan& plan, const std::string& name, PlanUse use) {
   const RunRequest& request = plan.request;
   OpenedSource opened = openSource(name, {.scene = request.scene,
@@ -45,7 +45,7 @@ void addCases(PlanEntry& entry, const std::vector<Case>& selected, const CaseOpt
   if (!options.algorithms.empty()) {
     throw InputError("--algorithm: the source names its own algorithm");
   }
-  // The case of a results file states its device and its answer, too.
+  // A case of a results file already has its device and answer.
   if (entry.known) return;
   for (Case& test_case : entry.cases) {
     test_case.device = options.device;
@@ -74,7 +74,7 @@ std::regex compiledFilter(const std::string& filter) {
   }
 }
 
-/// Keeps the cases that pass the filter and are part of the shard.
+/// Removes the cases that do not match the filter or belong to another shard.
 void applyFilterAndShard(Plan& plan) {
   const std::regex filter = compiledFilter(plan.request.filter);
   const Shard& shard = plan.request.shard;
@@ -96,39 +96,39 @@ void validateParameters(const Plan& plan) {
   }
 }
 
-/// Throws InputError unless the frame that is to be shown is in every recording.
+/// Throws InputError unless every recording has the requested frame.
 void requireFrame(const Plan& plan, PlanUse use) {
   const std::optional<std::uint32_t> frame = plan.request.frame;
   if (!frame) return;
   if (use == PlanUse::open && plan.entries.empty()) {
-    throw InputError("--frame: nothing is opened that has frames");
+    throw InputError("--frame: no recording to open");
   }
   for (const PlanEntry& entry : plan.entries) {
     const SceneInfo& scene = entry.source.reference.scene;
     if (*frame <= scene.frames) continue;
-    throw InputError(fmt::format("--frame: there is no frame {}: the last one of {} is {}", *frame,
-                                 scene.name, scene.frames));
+    throw InputError(fmt::format("--frame: there is no frame {}: the last frame of {} is {}",
+                                 *frame, scene.name, scene.frames));
   }
 }
 
-/// The file asked for, or, when there are several recordings, that name followed by the
-/// recording's.
+/// Names the screenshot of each entry: the requested name, followed by that of the recording if
+/// there are several.
 void nameScreenshots(Plan& plan) {
-  const std::filesystem::path& asked = plan.request.screenshot;
-  if (asked.empty()) return;
-  std::set<std::filesystem::path> taken;
+  const std::filesystem::path& requested = plan.request.screenshot;
+  if (requested.empty()) return;
+  std::set<std::filesystem::path> used;
   for (PlanEntry& entry : plan.entries) {
     const SceneInfo& scene = entry.source.reference.scene;
     const std::string name =
-        fmt::format("{} {} {} N{}{}", asked.stem().string(), scene.name, scene.object_type,
+        fmt::format("{} {} {} N{}{}", requested.stem().string(), scene.name, scene.object_type,
                     scene.objects, sweptText(entry.source.reference.swept));
-    entry.screenshot = asked;
+    entry.screenshot = requested;
     if (plan.entries.size() == 1) return;
-    entry.screenshot.replace_filename(name + asked.extension().string());
-    // Two recordings may differ in nothing but their boxes.
-    for (int k = 2; !taken.insert(entry.screenshot).second; ++k) {
+    entry.screenshot.replace_filename(name + requested.extension().string());
+    // Two recordings may differ only in their boxes.
+    for (int k = 2; !used.insert(entry.screenshot).second; ++k) {
       entry.screenshot.replace_filename(
-          fmt::format("{} ({}){}", name, k, asked.extension().string()));
+          fmt::format("{} ({}){}", name, k, requested.extension().string()));
     }
   }
 }

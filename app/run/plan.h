@@ -1,5 +1,5 @@
-// A run request, resolved once before anything is run: its sources opened, its cases made, its
-// parameters checked. It is listed, run headless or opened in the inspector.
+// A run request resolved before running: sources opened, cases created, parameters checked. A plan
+// is listed, run headless or opened in the inspector.
 #pragma once
 
 #include <filesystem>
@@ -15,30 +15,30 @@ namespace broadmark {
 
 struct Plan {
   RunRequest request;
-  std::vector<Algorithm> algorithms;  ///< all available ones, plug-ins included
-  /// In the order of the request's sources. The parameters of all cases have been checked.
+  std::vector<Algorithm> algorithms;  ///< all available, including plug-ins
+  /// In the order of the request's sources, with validated parameters.
   std::vector<PlanEntry> entries;
-  /// A results file without a chosen case, for the inspector: then there are no entries.
+  /// A results file without a chosen case, for the inspector; `entries` is then empty.
   struct UnchosenCase {
     std::filesystem::path file;
     Results results;
   };
   std::optional<UnchosenCase> unchosen_case;
-  /// Cases for the inspector that was given no source: then there are no entries.
+  /// Cases for an inspector without a source; `entries` is then empty.
   std::vector<Case> cases;
 };
 
 enum class PlanUse {
-  run,   ///< entries that the filter and the shard leave without cases are dropped
-  open,  ///< no cases but those of the algorithms that are named; a case may be unchosen
+  run,   ///< entries without cases after filter and shard are dropped
+  open,  ///< only cases of explicitly named algorithms; a case may be unchosen
 };
 
-/// Opens the sources and makes the cases. Throws InputError.
+/// Opens the sources and creates the cases. Throws InputError.
 Plan makePlan(const RunRequest&, PlanUse);
-/// The same with these algorithms, whichever plug-ins the request names.
+/// Same with these algorithms, ignoring the plug-ins of the request.
 Plan makePlan(const RunRequest&, PlanUse, std::vector<Algorithm> algorithms);
 
-/// The ids of all cases, as --list prints them.
+/// Ids of all cases, as printed by --list.
 std::vector<std::string> caseIds(const Plan&);
 
 }  // namespace broadmark

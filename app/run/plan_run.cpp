@@ -1,7 +1,6 @@
-// Recordings run one after the other. The repetitions of the cases of a recording are
-// interleaved, so that a disturbance of the machine hits all of them alike. Result files are
-// rewritten (each time atomically) after every recording: whatever ends the run, finished cases are
-// kept.
+// Runs recordings one after the other. The repetitions of a recording's cases are interleaved, so
+// that a disturbance of the machine affects all cases alike. Result files are atomically rewritten
+// after every recording, so that finished cases survive an aborted run.
 
 #include "run/plan_run.h"
 
@@ -25,7 +24,7 @@
 namespace broadmark {
 namespace {
 
-/// Variants that crossed the time limit on a smaller scene of the same kind: they are not run on
+/// Variants that exceeded the time limit on a smaller scene of the same kind: they are not run on
 /// larger ones (the paper's rule).
 class TimedOutVariants {
  public:
@@ -35,7 +34,7 @@ class TimedOutVariants {
     std::uint32_t& smallest = smallest_.try_emplace(key(result, test_case), objects).first->second;
     smallest = std::min(smallest, objects);
   }
-  /// Whether a case is not to be run; then its result says so.
+  /// Returns whether to skip a case; if so, sets its result.
   bool skip(CaseResult& result, const Case& test_case) const {
     const auto found = smallest_.find(key(result, test_case));
     if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
@@ -54,13 +53,13 @@ class TimedOutVariants {
   std::map<std::string, std::uint32_t> smallest_;
 };
 
-/// The machine, with the compute device that is used before the others.
-Environment environmentOf(const std::string& wanted_device) {
+/// The machine's environment, with the selected compute device first.
+Environment environmentOf(const std::string& requested_device) {
   Environment environment = thisEnvironment();
   std::vector<ComputeDevice> devices = computeDevices();
-  if (devices.empty() && wanted_device.empty()) return environment;
+  if (devices.empty() && requested_device.empty()) return environment;
   const auto chosen =
-      devices.begin() + static_cast<std::ptrdiff_t>(chooseDevice(devices, wanted_device));
+      devices.begin() + static_cast<std::ptrdiff_t>(chooseDevice(devices, requested_device));
   std::rotate(devices.begin(), chosen, chosen + 1);
   for (const ComputeDevice& device : devices) {
     environment.compute_devices.push_back(describe(device));
@@ -68,21 +67,21 @@ Environment environmentOf(const std::string& wanted_device) {
   return environment;
 }
 
-/// A case of the present recording.
+/// A case of the current recording.
 struct PlannedCase {
   const Case* test_case = nullptr;
   CaseResult result;
-  std::unique_ptr<CaseRun> run = {};  ///< null before its first pass and after its last
-  bool ended = false;                 ///< will not be run any more
+  std::unique_ptr<CaseRun> run = {};  ///< null before the first and after the last pass
+  bool finished = false;              ///< has no more passes
 };
 
 class PlanRun {
  public:
-  /// All arguments outlive this.
-  PlanRun(Plan& plan, const ExecutorFactory& make_host, RunObserver& observer)
+  /// All arguments must outlive this.
+  PlanRun(Plan& plan, const ExecutorFactory& make_executor, RunObserver& observer)
       : plan_(plan),
         request_(plan.request),
-        make_host_(make_host),
+        make_executor_(make_executor),
         observer_(observer),
         results_{.environments = {environmentOf(plan.entries.front().cases.front().device)},
                  .options = plan.request.command_line},
@@ -92,46 +91,47 @@ class PlanRun {
   Results run() {
     results_.complete = std::ranges::all_of(
         plan_.entries, [this](PlanEntry& entry) { return runRecording(entry); });
-    files_.end(results_);
+    files_.finish(results_);
     return std::move(results_);
   }
 
  private:
-  /// Above this many cases, their processes, with threads and devices, end between two passes.
-  static constexpr std::size_t kMaxHeld = 64;
+  /// Above this number of cases, their processes, threads and devices are released between passes.
+  static constexpr std::size_t kMaxLiveCases = 64;
 
-  /// All cases of a recording. Returns false when cancelled.
+  /// Runs all cases of a recording. Returns false when cancelled.
   bool runRecording(PlanEntry& entry) {
     const auto recording =
         openRecording(entry.source, observer_, request_.record, request_.scene.recorders);
     if (!recording) return false;
     Oracle oracle;
     cases_.clear();
-    for (const Case& test_case : entry.cases) cases_.push_back(begin(test_case, entry.source));
-    bool whole = false;
+    for (const Case& test_case : entry.cases)
+      cases_.push_back(plannedCase(test_case, entry.source));
+    bool is_complete = false;
     try {
-      whole = runPasses(*recording, oracle);
+      is_complete = runPasses(*recording, oracle);
     } catch (...) {
       try {
-        keep(entry);
+        storeResults(entry);
       } catch (const InputError&) {  // the first error is the one to report
       }
       throw;
     }
-    keep(entry);
-    if (whole) observer_.onRecordingEnd(entry, *recording, oracle);
-    return whole;
+    storeResults(entry);
+    if (is_complete) observer_.onRecordingEnd(entry, *recording, oracle);
+    return is_complete;
   }
 
-  PlannedCase begin(const Case& test_case, const Source& source) {
-    PlannedCase begun{.test_case = &test_case, .result = beginCase(test_case, source.reference)};
-    begun.result.conditions = commonConditions();
-    begun.result.conditions.plugin = test_case.algorithm.plugin_build;
-    begun.result.conditions.warnings = warnings_.of(test_case);
-    return begun;
+  PlannedCase plannedCase(const Case& test_case, const Source& source) {
+    PlannedCase planned{.test_case = &test_case, .result = beginCase(test_case, source.reference)};
+    planned.result.conditions = commonConditions();
+    planned.result.conditions.plugin = test_case.algorithm.plugin_build;
+    planned.result.conditions.warnings = warnings_.warningsFor(test_case);
+    return planned;
   }
 
-  /// All repetitions, interleaved. Returns false when cancelled.
+  /// Runs all repetitions, interleaved. Returns false when cancelled.
   bool runPasses(IndexedFrames& recording, Oracle& oracle) {
     const RepetitionOptions& repetitions = request_.repetitions;
     const SceneInfo& scene = recording.scene();
@@ -146,24 +146,24 @@ class PlanRun {
       if (passes > 1) order.shuffle();
       for (const std::size_t i : order.cases()) {
         PlannedCase& planned = cases_[i];
-        if (planned.ended) continue;
+        if (planned.finished) continue;
         const bool measured = std::cmp_greater_equal(pass, repetitions.warmup);
         if (!runOnce(planned, recording, oracle, steps, measured)) return false;
         steps += steps_of_pass;
         CaseResult& result = planned.result;
         if (result.status != Status::ok || rule.isEnough(result)) {
-          result.conditions.repetitions = rule.wanted(result);
-          end(planned);
+          result.conditions.repetitions = rule.expected(result);
+          finish(planned);
           steps += steps_of_pass * (passes - 1 - pass);
         }
-        if (planned.ended || cases_.size() > kMaxHeld) planned.run.reset();
+        if (planned.finished || cases_.size() > kMaxLiveCases) planned.run.reset();
         observer_.onProgress(steps, planned.test_case->algorithm.id);
       }
     }
     return true;
   }
 
-  /// One repetition of one case, unless it is not to be run. Returns false when cancelled.
+  /// Runs one repetition of a case unless it is skipped. Returns false when cancelled.
   bool runOnce(PlannedCase& planned, IndexedFrames& recording, Oracle& oracle, std::uint64_t steps,
                bool measured) {
     CaseResult& result = planned.result;
@@ -171,7 +171,8 @@ class PlanRun {
     if (timed_out_.skip(result, test_case)) return true;
     const auto cancelled = [this] { return observer_.cancelled(); };
     if (!planned.run) {
-      planned.run = std::make_unique<CaseRun>(test_case, request_.policy, make_host_, cancelled);
+      planned.run =
+          std::make_unique<CaseRun>(test_case, request_.policy, make_executor_, cancelled);
     }
     const RunHooks hooks{.cancelled = cancelled, .progress = [&](std::uint32_t frame) {
                            observer_.onProgress(steps + frame, test_case.algorithm.id);
@@ -181,19 +182,19 @@ class PlanRun {
     return true;
   }
 
-  /// Keeps the result of a case that will not be run any more.
-  void end(PlannedCase& planned) {
+  /// Stores the result of a case after its last pass.
+  void finish(PlannedCase& planned) {
     files_.add(planned.result);
-    planned.ended = true;
+    planned.finished = true;
     observer_.onCaseFinished(planned.result);
   }
 
-  /// Keeps the results of the cases that have been run, if only for some of their passes.
-  void keep(const PlanEntry& entry) {
+  /// Stores the results of all cases that have run at least one pass.
+  void storeResults(const PlanEntry& entry) {
     std::vector<CaseResult> done;
     for (PlannedCase& planned : cases_) {
       const bool measured = !planned.result.repetitions.empty();
-      if (measured && !planned.ended) end(planned);
+      if (measured && !planned.finished) finish(planned);
       if (measured || planned.result.status != Status::ok) {
         done.push_back(std::move(planned.result));
       }
@@ -211,7 +212,7 @@ class PlanRun {
     const HostOptions& hosts = request_.hosts;
     return {.check = request_.policy.check,
             .warmup = request_.repetitions.warmup,
-            .repetitions = request_.repetitions.most,
+            .repetitions = request_.repetitions.max_count,
             .frame_limit_seconds = limit(request_.policy.frame_limit_seconds),
             .initialize_limit_seconds = limit(request_.policy.initialize_limit_seconds),
             .call_limit_seconds =
@@ -222,13 +223,13 @@ class PlanRun {
 
   Plan& plan_;
   const RunRequest& request_;
-  const ExecutorFactory& make_host_;
+  const ExecutorFactory& make_executor_;
   RunObserver& observer_;
   Results results_;
   RunWarnings warnings_;
   ResultFiles files_;
   TimedOutVariants timed_out_;
-  std::vector<PlannedCase> cases_;  ///< of the present recording
+  std::vector<PlannedCase> cases_;  ///< of the current recording
 };
 
 }  // namespace
@@ -242,8 +243,8 @@ std::uint64_t stepsOf(const Plan& plan) {
   return steps;
 }
 
-Results runPlan(Plan& plan, const ExecutorFactory& make_host, RunObserver& observer) {
-  return PlanRun(plan, make_host, observer).run();
+Results runPlan(Plan& plan, const ExecutorFactory& make_executor, RunObserver& observer) {
+  return PlanRun(plan, make_executor, observer).run();
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Running a plan: its recordings one after the other, the cases of each in turn.
+// Runs a plan: its recordings one after the other, the cases of each interleaved.
 #pragma once
 
 #include <span>
@@ -12,25 +12,25 @@
 
 namespace broadmark {
 
-/// Callbacks for a running plan, made by the thread that runs it. The cases of a recording are a
+/// Callbacks for a running plan, called on the thread that runs it. The cases of a recording are a
 /// task with a step per frame; its detail is the algorithm.
 class RunObserver : public TaskObserver {
  public:
-  /// A case will not be run any more.
+  /// Called after the last pass of a case.
   virtual void onCaseFinished(const CaseResult& /*result*/) {}
-  /// The results of an entry, before they are kept. Not called without any.
+  /// Called with the results of an entry before they are stored; not called without results.
   virtual void onRecordingResults(const PlanEntry& /*entry*/,
                                   std::span<const CaseResult> /*results*/) {}
-  /// An entry has been run to its end, and its results are kept.
+  /// Called when all cases of an entry have run, after its results are stored.
   virtual void onRecordingEnd(const PlanEntry& /*entry*/, IndexedFrames& /*recording*/, Oracle&) {}
 };
 
-/// How many steps the tasks of a plan's cases have together.
+/// Total number of steps of the tasks of a plan's cases.
 std::uint64_t stepsOf(const Plan& plan);
 
-/// Opens or simulates the plan's recordings, runs every case on them, checks and measures. The
-/// result files that the request names are kept up to date. Returns what has been run; complete
-/// unless the observer has ended it. Throws InputError; finished cases are in the files then.
-Results runPlan(Plan& plan, const ExecutorFactory& make_host, RunObserver& observer);
+/// Opens or simulates the plan's recordings, then runs, checks and measures every case. Keeps the
+/// requested result files up to date. Returns the results; incomplete if the observer cancelled the
+/// run. Throws InputError; the files then contain the finished cases.
+Results runPlan(Plan& plan, const ExecutorFactory& make_executor, RunObserver& observer);
 
 }  // namespace broadmark

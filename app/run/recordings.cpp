@@ -1,4 +1,4 @@
-// Recordings of sources, and where they are kept.
+// Recordings of sources, and their paths.
 
 #include "run/recordings.h"
 
@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reports what is `doing` to a scene, frame by frame.
-FrameProgress reportedTo(TaskObserver& tasks, const char* doing, const SceneInfo& scene) {
+/// Starts a task with a step per frame, and returns its progress callback.
+FrameProgress startTask(TaskObserver& tasks, const char* activity, const SceneInfo& scene) {
   tasks.onTaskStart(
-      fmt::format("{} {} {} N{}", doing, scene.name, scene.object_type, scene.objects),
+      fmt::format("{} {} {} N{}", activity, scene.name, scene.object_type, scene.objects),
       scene.frames);
   return [&tasks](std::uint32_t frame) {
     tasks.onProgress(frame);
@@ -30,41 +30,42 @@ FrameProgress reportedTo(TaskObserver& tasks, const char* doing, const SceneInfo
   };
 }
 
-/// Bakes a source's simulation below `directory`, unless it is already there. Returns the path of
-/// the first recorder's recording, or "" when cancelled.
+/// Bakes a source's simulation into `directory`, unless already baked. Returns the path of the
+/// first recorder's recording, or "" when cancelled.
 fs::path bakeInto(Source& source, TaskObserver& tasks, const fs::path& directory,
                   const std::vector<std::string>& recorders) {
   Simulation& simulation = *source.simulation;
   const auto paths =
       recordingPaths(directory, simulation.scene(), source.reference.swept, recorders);
-  const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
-  if (std::ranges::all_of(paths, there)) return paths.front();
+  const auto is_baked = [&](const fs::path& path) { return isBaked(path, simulation); };
+  if (std::ranges::all_of(paths, is_baked)) return paths.front();
   for (const fs::path& path : paths) makeDirectory(path.parent_path());
-  const bool whole = bake(simulation, paths, reportedTo(tasks, "baking", simulation.scene()));
-  return whole ? paths.front() : fs::path();
+  const bool is_complete = bake(simulation, paths, startTask(tasks, "baking", simulation.scene()));
+  return is_complete ? paths.front() : fs::path();
 }
 
-std::unique_ptr<Recording> recordTemporary(const char* doing, FrameSource& frames,
+std::unique_ptr<Recording> recordTemporary(const char* activity, FrameSource& frames,
                                            TaskObserver& tasks) {
   RecordingWriter writer(frames.scene());
-  const bool whole = recordAll(frames, writer, reportedTo(tasks, doing, frames.scene()));
-  return whole ? writer.finishTemporary() : nullptr;
+  const bool is_complete = recordAll(frames, writer, startTask(tasks, activity, frames.scene()));
+  return is_complete ? writer.finishTemporary() : nullptr;
 }
 
-/// The recording that a run was planned for. Throws InputError when another has taken its name.
-std::unique_ptr<Recording> openAgain(const RecordingReference& reference) {
+/// Opens the recording that a run was planned for. Throws InputError if it has been replaced.
+std::unique_ptr<Recording> reopen(const RecordingReference& reference) {
   auto recording = openRecordingFile(reference.path);
   SceneInfo scene = recording->scene();
-  scene.name = reference.scene.name;  // that may tell of sweeping
+  scene.name = reference.scene.name;  // may have the suffix of swept boxes
   if (scene == reference.scene) return recording;
-  throw InputError(fmt::format("{}: was replaced after the run had begun", reference.path));
+  throw InputError(fmt::format("{}: was replaced after the run had started", reference.path));
 }
 
-/// The recording as it is, swept or not. Null when cancelled.
-std::unique_ptr<Recording> openPlain(Source& source, TaskObserver& tasks, const fs::path& directory,
-                                     const std::vector<std::string>& recorders) {
+/// Opens a source's recording without sweeping its boxes. Returns null when cancelled.
+std::unique_ptr<Recording> openUnswept(Source& source, TaskObserver& tasks,
+                                       const fs::path& directory,
+                                       const std::vector<std::string>& recorders) {
   if (source.imported) return recordTemporary("importing", *source.imported, tasks);
-  if (!source.simulation) return openAgain(source.reference);
+  if (!source.simulation) return reopen(source.reference);
   if (directory.empty()) return recordTemporary("baking", *source.simulation, tasks);
   const fs::path path = bakeInto(source, tasks, directory, recorders);
   return path.empty() ? nullptr : openRecordingFile(path);
@@ -75,7 +76,7 @@ std::unique_ptr<Recording> openPlain(Source& source, TaskObserver& tasks, const 
 std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks,
                                              const fs::path& directory,
                                              const std::vector<std::string>& recorders) {
-  std::unique_ptr<Recording> recording = openPlain(source, tasks, directory, recorders);
+  std::unique_ptr<Recording> recording = openUnswept(source, tasks, directory, recorders);
   if (!recording) return nullptr;
   const bool swept = source.reference.reading.contains("swept");
   const std::string hash = swept ? sweptHash(recording->hash()) : recording->hash();
@@ -125,8 +126,8 @@ void requireRecordingName(const fs::path& path) {
 
 void makeDirectory(const fs::path& directory) {
   std::vector<fs::path> missing;
-  for (fs::path at = fs::absolute(directory); !fs::exists(at); at = at.parent_path()) {
-    missing.push_back(at);
+  for (fs::path path = fs::absolute(directory); !fs::exists(path); path = path.parent_path()) {
+    missing.push_back(path);
   }
   if (missing.empty() && fs::is_directory(directory)) return;
   requireInSandbox(directory);
@@ -136,7 +137,7 @@ void makeDirectory(const fs::path& directory) {
     throw InputError(
         fmt::format("{}: cannot create the directory: {}", directory.string(), error.message()));
   }
-  for (const fs::path& made : missing) syncName(made);
+  for (const fs::path& created : missing) syncName(created);
 }
 
 }  // namespace broadmark

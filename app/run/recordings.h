@@ -1,4 +1,4 @@
-// The recordings that a run works on: given ones, and those that are simulated for it.
+// Recordings for a run: existing ones, and simulations recorded for it.
 #pragma once
 
 #include <filesystem>
@@ -12,29 +12,29 @@
 
 namespace broadmark {
 
-/// Where recordings by these recorders lie below a directory, laid out as the original's:
-/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", …. Those of a sweep also
-/// have the `swept` parameters in their names. Without recorders: the one of the kind that
-/// recordingExtension() names.
+/// Paths of the recordings by these recorders, laid out like the original's:
+/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", …. Names of a sweep's
+/// recordings contain the `swept` parameters. Without recorders: one recording of the kind returned
+/// by recordingExtension().
 std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& directory,
                                                   const SceneInfo&, const ParameterValues& swept,
                                                   std::vector<std::string> recorders);
 
-/// Opens a source's recording and fills in its hash. A simulation is recorded first: below
-/// `directory`, once by each of `recorders`, of which the first is opened; or, if that is empty,
-/// into an unnamed temporary file, as imported frames always are. Null when cancelled. Throws
-/// InputError; also when the recording is not the expected one.
+/// Opens a source's recording and fills in its hash. A simulation is recorded first: into
+/// `directory`, once by each of `recorders`, of which the first is opened; or, if `directory` is
+/// empty, into an unnamed temporary file, like all imported frames. Returns null when cancelled.
+/// Throws InputError, also if the hash is not the expected one.
 std::unique_ptr<IndexedFrames> openRecording(Source&, TaskObserver&,
                                              const std::filesystem::path& directory = {},
                                              const std::vector<std::string>& recorders = {});
 
-/// The same for a command: shows its progress unless `quiet`. Throws Interrupted, too.
+/// Same for a command: shows progress unless `quiet`; throws Interrupted when cancelled.
 std::unique_ptr<IndexedFrames> openForCommand(Source&, bool quiet);
 
-/// Throws InputError, naming `what`, unless `hash` is that of the recording a case ran on.
+/// Throws InputError, naming `what`, unless `hash` is the `expected` one of a case's recording.
 void requireHash(const std::string& what, const std::string& hash, const std::string& expected);
 
-/// Throws InputError unless the name ends like that of a recording of boxes.
+/// Throws InputError unless the file has the extension of a box recording.
 void requireRecordingName(const std::filesystem::path&);
 
 /// Creates a directory and its parents. Throws InputError.

@@ -1,4 +1,4 @@
-// The files that a run keeps its results in.
+// Result files of a run.
 #pragma once
 
 #include <filesystem>
@@ -12,34 +12,33 @@
 
 namespace broadmark {
 
-/// Writes whole results to each of the paths, unless there is no case.
+/// Writes complete results to each of the paths, unless there are no cases.
 void writeResults(const ResultPaths& paths, const Results& results);
 
-/// Keeps files of results up to date while a run goes on. Those made of lines get each case as soon
-/// as it is done, on the disc; the others are replaced atomically when a recording
-/// is done, or, to standard output, once at the end. Without any case all files stay as they were.
-/// Every method throws InputError when a file cannot be written.
+/// Keeps result files up to date during a run. Line-based files get each case when it is finished,
+/// synced to disc; the others are atomically replaced after each recording or, on standard output,
+/// written once at the end. Without any case, all files remain unchanged. Every method throws
+/// InputError if a file cannot be written.
 class ResultFiles {
  public:
-  /// Takes the files of lines for itself; `results` has no cases yet. Paths as writeOutput() takes
-  /// them.
+  /// Opens the line-based files; `results` has no cases yet. Paths are those of writeOutput().
   ResultFiles(const ResultPaths& paths, const Results& results);
 
   void add(const CaseResult& result);
-  /// Writes the other files.
+  /// Replaces the files that are not line-based.
   void rewrite(const Results& results);
-  void end(const Results& results);
+  void finish(const Results& results);
 
  private:
-  struct Lines {
+  struct LineFile {
     const ResultWriter::Lines* writer;
     std::unique_ptr<AppendedFile> file;
-    std::string before;  ///< what stands before the first case, until that is written
+    std::string header;  ///< written before the first case; empty afterwards
   };
   void write(const Results& results, bool to_standard_output);
 
-  std::vector<Lines> lines_;
-  std::vector<std::pair<ResultWriter, std::filesystem::path>> wholes_;
+  std::vector<LineFile> line_files_;
+  std::vector<std::pair<ResultWriter, std::filesystem::path>> whole_files_;
 };
 
 }  // namespace broadmark

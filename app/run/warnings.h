@@ -1,4 +1,4 @@
-// What may disturb the times of a run, said before they are measured.
+// Warnings about what may disturb the times of a run, printed before measuring.
 #pragma once
 
 #include <set>
@@ -15,17 +15,17 @@ namespace broadmark {
 /// on measured times.
 class RunWarnings {
  public:
-  /// Watches the machine for a moment, as others use it: before our own work begins. `environment`
-  /// outlives this.
+  /// Observes the machine's load for a moment, before our own work starts. `environment` must
+  /// outlive this.
   explicit RunWarnings(const Environment& environment);
 
-  /// Those that concern a case. The ones that have not been said are said now.
-  std::vector<std::string> of(const Case& test_case);
+  /// Returns the warnings that concern a case, and prints those not printed yet.
+  std::vector<std::string> warningsFor(const Case& test_case);
 
  private:
   const Environment& environment_;
   MachineState machine_;
-  std::set<std::string> said_;
+  std::set<std::string> shown_;
 };
 
 }  // namespace broadmark

@@ -1,5 +1,5 @@
 // Boxes as CSV: a line for each body in each frame, "frame,id,min x,min y,min z,max x,max y,max z".
-// Whatever people have can be written like that.
+// A generic format for data from any program.
 
 #include <fmt/format.h>
 
@@ -36,20 +36,20 @@ TextRow rowOf(const LineReader& lines, const std::vector<std::string_view>& cell
   return row;
 }
 
-/// Whether the first line of a file says what the columns are.
-bool isHeading(std::string_view line) {
+/// Whether the first line of a file names the columns.
+bool isHeader(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\"");
   return first != std::string_view::npos &&
          std::isalpha(static_cast<unsigned char>(line[first])) != 0;
 }
 
-/// The lines with the same frame number.
+/// Reads the lines with the same frame number.
 bool readFrame(LineReader& lines, TextFrame& frame) {
   std::vector<std::string_view> cells;
   while (lines.next()) {
     const std::string_view line = lines.line();
     if (imports::isBlank(line)) continue;
-    if (lines.number() == 1 && isHeading(line)) continue;
+    if (lines.number() == 1 && isHeader(line)) continue;
     imports::splitCells(',', line, cells);
     if (cells.size() != kCells) {
       lines.fail(fmt::format("{} values: 8 are expected: frame, id, min x, y, z, max x, y, z",
@@ -57,7 +57,7 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
     }
     const std::int64_t number = lines.integer(cells[0], "the frame");
     if (frame.number && number != *frame.number) {
-      lines.again();
+      lines.unread();
       return true;
     }
     frame.number = number;

@@ -1,5 +1,5 @@
-// Files that describe a scene: authored scenes, scene parameters, and the sidecars of baked
-// recordings, which repeat them.
+// Files that describe a scene: authored scenes, scene parameters, and sidecars of baked recordings,
+// which contain scene parameters.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-// Particle trajectories as LAMMPS dumps them as text: sections "ITEM: …", of which the last of each
-// frame names the columns and holds a line for each atom, in any order.
+// Particle trajectories in text dumps of LAMMPS. They consist of sections "ITEM: …"; the last one
+// of each frame names the columns and holds a line for each atom, in any order.
 
 #include <algorithm>
 
@@ -15,24 +15,24 @@ using imports::TextFrame;
 
 constexpr std::string_view kItem = "ITEM: ";
 
-/// What precedes the atoms of a frame.
-struct Head {
+/// The sections of a frame before the atoms.
+struct FrameHeader {
   std::int64_t atoms = -1;  ///< -1: not stated
   std::array<double, 3> low{};
   std::array<double, 3> high{};
-  bool bounds = false;   ///< low and high are stated
-  bool slanted = false;  ///< the box is no cuboid
+  bool has_bounds = false;    ///< low and high are stated
+  bool is_triclinic = false;  ///< the box is not a cuboid
 };
 
 ParticleColumns columnsOf(const LineReader& lines, const std::vector<std::string_view>& names,
-                          const Head& head) {
+                          const FrameHeader& header) {
   const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
     const auto found = std::ranges::find(names, name);
     if (found == names.end()) return {};
     return static_cast<std::size_t>(found - names.begin());
   };
   ParticleColumns columns{.what = "atom",
-                          .no_radius = "no column 'radius' or 'diameter': say it with --radius",
+                          .no_radius = "no column 'radius' or 'diameter': set it with --radius",
                           .id = find("id"),
                           .radius = find("radius"),
                           .count = names.size()};
@@ -55,34 +55,35 @@ ParticleColumns columnsOf(const LineReader& lines, const std::vector<std::string
     if (!x || !y || !z) continue;
     columns.position = {*x, *y, *z};
     if (!coordinates.scaled) return columns;
-    if (!head.bounds || head.slanted) {
+    if (!header.has_bounds || header.is_triclinic) {
       lines.fail("scaled positions need a cuboid box ('ITEM: BOX BOUNDS'): dump x y z");
     }
-    columns.low = head.low;
+    columns.low = header.low;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      columns.extent[axis] = head.high[axis] - head.low[axis];
+      columns.extent[axis] = header.high[axis] - header.low[axis];
     }
     return columns;
   }
-  lines.fail("no columns of positions: 'x y z' is expected, or 'xu yu zu', 'xs ys zs'");
+  lines.fail("no position columns: 'x y z', 'xu yu zu' or 'xs ys zs' is expected");
 }
 
-void readBounds(LineReader& lines, Head& head) {
+void readBounds(LineReader& lines, FrameHeader& header) {
   std::vector<std::string_view> words;
   imports::splitWords(lines.line(), words);
-  head.slanted = std::ranges::find(words, "xy") != words.end();
-  head.bounds = true;
+  header.is_triclinic = std::ranges::find(words, "xy") != words.end();
+  header.has_bounds = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lines.require("the bounds of the box");
     imports::splitWords(lines.line(), words);
     if (words.size() < 2) lines.fail("two bounds of the box are expected");
-    head.low[axis] = lines.realNumber(words[0], "a bound of the box");
-    head.high[axis] = lines.realNumber(words[1], "a bound of the box");
+    header.low[axis] = lines.realNumber(words[0], "a bound of the box");
+    header.high[axis] = lines.realNumber(words[1], "a bound of the box");
   }
 }
 
-/// The sections before the atoms; then the present line names their columns. False at the end.
-bool readHead(LineReader& lines, Head& head) {
+/// Reads the sections before the atoms, up to the line with the names of the atoms' columns.
+/// Returns false at the end of the file.
+bool readHeader(LineReader& lines, FrameHeader& header) {
   for (bool first = true; lines.next(); first = false) {
     const std::string_view line = lines.line();
     if (first && imports::isBlank(line)) {
@@ -92,15 +93,15 @@ bool readHead(LineReader& lines, Head& head) {
     if (!line.starts_with(kItem)) lines.fail("'ITEM: …' is expected");
     const std::string_view item = line.substr(kItem.size());
     if (item.starts_with("ATOMS")) {
-      if (head.atoms < 0) lines.fail("'ITEM: NUMBER OF ATOMS' is expected before the atoms");
+      if (header.atoms < 0) lines.fail("'ITEM: NUMBER OF ATOMS' is expected before the atoms");
       return true;
     }
     if (item.starts_with("BOX BOUNDS")) {
-      readBounds(lines, head);
+      readBounds(lines, header);
     } else if (item.starts_with("NUMBER OF ATOMS")) {
       lines.require("a number of atoms");
-      head.atoms = lines.integer(lines.line(), "the number of atoms");
-      if (head.atoms < 0) lines.fail("a negative number of atoms");
+      header.atoms = lines.integer(lines.line(), "the number of atoms");
+      if (header.atoms < 0) lines.fail("a negative number of atoms");
     } else if (item.starts_with("TIMESTEP") || item.starts_with("UNITS") ||
                item.starts_with("TIME")) {
       lines.require("a value");
@@ -108,19 +109,19 @@ bool readHead(LineReader& lines, Head& head) {
       lines.fail("an unknown ITEM: TIMESTEP, NUMBER OF ATOMS, BOX BOUNDS or ATOMS is expected");
     }
   }
-  if (head.atoms >= 0) lines.require("'ITEM: ATOMS'");
+  if (header.atoms >= 0) lines.require("'ITEM: ATOMS'");
   return false;
 }
 
 bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
-  Head head;
-  if (!readHead(lines, head)) return false;
+  FrameHeader header;
+  if (!readHeader(lines, header)) return false;
   std::vector<std::string_view> words;
   const std::string names(lines.line().substr(kItem.size()));
   imports::splitWords(names, words);
   words.erase(words.begin());
-  const ParticleColumns columns = columnsOf(lines, words, head);
-  imports::readParticles(lines, frame, head.atoms, columns, radius);
+  const ParticleColumns columns = columnsOf(lines, words, header);
+  imports::readParticles(lines, frame, header.atoms, columns, radius);
   return true;
 }
 

@@ -1,4 +1,4 @@
-// Scenes and recordings as sources.
+// Sources from scenes, recordings and imported files.
 
 #include "sources/make_source.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Scene parameters that have options of their own, as texts of values.
+/// Scene parameters with their own options, as text.
 ParameterValues statedValues(const SceneOptions& options) {
   ParameterValues values = options.parameters;
   if (!options.objects.empty()) {
@@ -36,12 +36,12 @@ ParameterValues statedValues(const SceneOptions& options) {
 void requireStatedOnce(const ParameterValues& stated, const ParameterValues& parameters) {
   for (const auto& [name, text] : stated) {
     if (!parameters.contains(name)) continue;
-    throw InputError(fmt::format("--param: '{}' is given twice: {} states it, too", name,
-                                 parameterOption(name)));
+    throw InputError(
+        fmt::format("--param: '{}' is given twice: {} also sets it", name, parameterOption(name)));
   }
 }
 
-/// The engines asked for, by their own option or by --param; one "": the default.
+/// The engines requested by --engine or --param; a single "": the default.
 std::vector<std::string> enginesOf(const ParameterValues& stated,
                                    const ParameterValues& parameters) {
   for (const ParameterValues* values : {&stated, &parameters}) {
@@ -56,7 +56,7 @@ std::unique_ptr<Simulation> simulationOf(NamedSource& scene, const std::string& 
   return parseSceneParameters(scene.text(), scene.name());
 }
 
-/// Bodies, sizes and places are stated by an authored scene itself: options for them are mistakes.
+/// Throws InputError for options of bodies, sizes or positions if an authored scene defines them.
 void requireApplicable(Simulation& simulation, const std::string& scene,
                        const ParameterValues& options) {
   if (simulation.listing().id != kAuthoredSceneId) return;
@@ -64,16 +64,16 @@ void requireApplicable(Simulation& simulation, const std::string& scene,
   for (const auto& [name, value] : options) {
     if (std::ranges::find(known, name) != known.end()) continue;
     throw InputError(
-        fmt::format("{}: {}: an authored scene states its bodies itself: leave the option out",
-                    scene, parameterOption(name)));
+        fmt::format("{}: {}: an authored scene defines its own bodies: omit the option", scene,
+                    parameterOption(name)));
   }
 }
 
-/// Fills in what of the `given` parameters tells the simulations apart, but for what the names of
-/// recordings state anyway.
-void noteSwept(std::vector<SweptSimulation>& simulations, const ParameterValues& given) {
+/// Sets `swept` to the `given` parameters that differ between simulations, except those that are
+/// part of every recording's name.
+void setSweptParameters(std::vector<SweptSimulation>& simulations, const ParameterValues& given) {
   const auto values_of = [&](const std::string& name) {
-    std::vector<std::string> values;  // "": has no such parameter
+    std::vector<std::string> values;  // "": the simulation has no such parameter
     for (const auto& [simulation, swept] : simulations) {
       values.push_back(parameterValues(*simulation)[name]);
     }
@@ -131,10 +131,10 @@ Source recordingSource(const fs::path& path) {
 Source importedSource(const std::vector<std::string>& names, const FileImport& import,
                       ReadingOptions options) {
   Source source;
-  source.imported = import.open(imports::filesOf(names, import.extensions), options);
+  source.imported = import.open(imports::expandNames(names, import.extensions), options);
   source.reference.scene = source.imported->scene();
   source.reference.path = names.front();
-  source.reference.reading = options.stated();
+  source.reference.reading = options.changed();
   std::erase_if(source.reference.reading, [&](const auto& option) {
     return std::ranges::find(import.options, option.first) == import.options.end();
   });
@@ -156,9 +156,9 @@ void sweepBoxes(Source& source) {
   source.reference.reading["swept"] = "on";
 }
 
-fs::path statedPath(const fs::path& file, const std::string& stated) {
-  const fs::path beside = file.parent_path() / stated;
-  return !fs::exists(stated) && fs::exists(beside) ? beside : fs::path(stated);
+fs::path resolvedPath(const fs::path& file, const std::string& stated) {
+  const fs::path relative = file.parent_path() / stated;
+  return !fs::exists(stated) && fs::exists(relative) ? relative : fs::path(stated);
 }
 
 std::vector<SweptSimulation> makeSimulations(NamedSource& scene, const SceneOptions& options,
@@ -167,26 +167,26 @@ std::vector<SweptSimulation> makeSimulations(NamedSource& scene, const SceneOpti
   requireStatedOnce(stated, parameters);
   std::vector<SweptSimulation> simulations;
   for (const std::string& engine : enginesOf(stated, parameters)) {
-    const auto fresh = [&] {
+    const auto make = [&] {
       auto simulation = simulationOf(scene, engine);
       requireApplicable(*simulation, scene.name(), stated);
-      // The engine first: it brings parameters of its own.
+      // Set the engine first, as it adds parameters.
       if (!engine.empty()) setParameters(*simulation, {{"engine", engine}});
       return simulation;
     };
-    const auto first = fresh();
+    const auto first = make();
     ParameterValues texts = stated;
     texts.merge(applicableValues(*first, parameters));
     if (!engine.empty()) texts["engine"] = engine;
     for (const ParameterValues& values : combinations(*first, texts)) {
-      auto simulation = fresh();
+      auto simulation = make();
       setParameters(*simulation, values);
       simulations.push_back({std::move(simulation), {}});
     }
   }
   ParameterValues given = stated;
   given.insert(parameters.begin(), parameters.end());
-  noteSwept(simulations, given);
+  setSweptParameters(simulations, given);
   return simulations;
 }
 

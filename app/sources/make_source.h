@@ -1,4 +1,4 @@
-// What several kinds of sources share: recordings to be simulated, and given ones.
+// Creates sources: simulations, existing recordings and imported files.
 #pragma once
 
 #include <filesystem>
@@ -10,45 +10,45 @@
 
 namespace broadmark {
 
-/// In results, beside the parameters of an authored scene: where its file is.
+/// Key of an authored scene's file among its parameters in results.
 inline constexpr const char* kSceneFile = "scene_file";
 
-/// "recordings (.aabbs, …)", for help.
+/// Text for help: "recordings (.aabbs, …)".
 std::string recordingKindsText();
 
-/// The ids of the built-in scenes.
+/// Ids of the built-in scenes.
 std::vector<std::string> sceneIds();
 bool isSceneId(const std::string& name);
 
-/// The recording of a simulation.
+/// Source that records a simulation.
 Source simulationSource(std::unique_ptr<Simulation>);
-/// A recording in a file. Throws InputError.
+/// Source for a recording's file. Throws InputError.
 Source recordingSource(const std::filesystem::path&);
-/// Files that are imported. Throws InputError.
+/// Source for imported files. Throws InputError.
 Source importedSource(const std::vector<std::string>& names, const FileImport&, ReadingOptions);
-/// Files that are imported, or a recording, read as the options say. Throws InputError, also for an
-/// option that is of no use to them.
+/// Source for imported files or a recording, read with these options. Throws InputError, also for
+/// an option that does not apply to them.
 Source fileSource(const std::vector<std::string>& names, const ReadingOptions&);
 
-/// Makes its boxes swept ones.
+/// Marks a source for sweeping its boxes.
 void sweepBoxes(Source&);
 
-/// A path that is stated in `file`: as stated if there is such a file, else relative to `file`.
-std::filesystem::path statedPath(const std::filesystem::path& file, const std::string& stated);
+/// Resolves a path stated in `file`: returned unchanged if it exists, else relative to `file`.
+std::filesystem::path resolvedPath(const std::filesystem::path& file, const std::string& stated);
 
 /// One of several simulations of a scene.
 struct SweptSimulation {
   std::unique_ptr<Simulation> simulation;
-  ParameterValues swept;  ///< what tells it from the others, as RecordingReference::swept
+  ParameterValues swept;  ///< parameters that differ, as in RecordingReference::swept
 };
 
-/// Every simulation that the options ask for: every combination of their values (sweep.h). The
-/// scene is a built-in one's name, a file of scene parameters, or an authored scene, of which the
-/// options override the parameters. Throws InputError.
+/// Creates a simulation for every combination of the options' values (sweep.h). The scene is the
+/// name of a built-in scene, a file of scene parameters or an authored scene; options override its
+/// parameters. Throws InputError.
 std::vector<SweptSimulation> makeSimulations(NamedSource& scene, const SceneOptions&,
                                              const ParameterValues& parameters);
 
-/// Opens a scene of any kind: SourceKind::open of all of them.
+/// Opens a scene: SourceKind::open of all kinds of scenes.
 OpenedSource openScene(NamedSource&, const OpeningOptions&);
 
 }  // namespace broadmark

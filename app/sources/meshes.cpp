@@ -1,4 +1,4 @@
-// Meshes, one file a frame or an animation in one file, as boxes of their elements.
+// Meshes as boxes of their elements: one file per frame, or an animation in a single file.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@ namespace broadmark::sources::meshes {
 
 SourceKind kind() {
   const std::vector<std::string> extensions = {".ply", ".obj", ".stl", ".gltf", ".glb"};
-  // Where assimp is left out, a file that it would read is known, to say so.
+  // Without assimp, its file types are still recognised, to report that it is missing.
   const std::string shown =
       parts::kAssimp.included ? fmt::format("{}", fmt::join(extensions, ", ")) : ".obj";
   return {.what = fmt::format("meshes and animations ({})", shown),

@@ -14,10 +14,10 @@
 namespace broadmark::sources::original_settings {
 namespace {
 
-/// The settings that are parameters here.
+/// Converts settings to parameters of our algorithm.
 ParameterValues originalParameters(const OriginalSettings& settings, const Algorithm& algorithm) {
   const std::string& family = algorithm.family;
-  if (family == "KD") {  // one margin for all axes here
+  if (family == "KD") {  // a single margin for all axes
     return {{"objects_per_leaf", std::to_string(settings.kd_objects_per_leaf)},
             {"margin", fmt::format("{}", std::ranges::max(settings.margin))}};
   }
@@ -28,7 +28,7 @@ ParameterValues originalParameters(const OriginalSettings& settings, const Algor
   return {};
 }
 
-/// The original's ids of algorithms that are known.
+/// The original's ids of `known` algorithms.
 std::vector<std::string> knownNames(const std::vector<Algorithm>& known) {
   std::vector<std::string> names;
   for (const OriginalId& id : originalIds()) {
@@ -37,7 +37,7 @@ std::vector<std::string> knownNames(const std::vector<Algorithm>& known) {
   return names;
 }
 
-/// Its case, the algorithm being one of `known`. Throws InputError.
+/// Creates the case of the settings, with one of the `known` algorithms. Throws InputError.
 Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>& known) {
   const OriginalId* id = findOriginalId(settings.algorithm);
   const Algorithm* algorithm = id == nullptr ? nullptr : findAlgorithm(id->algorithm, known);
@@ -52,7 +52,7 @@ Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>
 
 OpenedSource open(NamedSource& source, const OpeningOptions& options) {
   const OriginalSettings settings = parseOriginalSettings(source.text(), source.name());
-  return OpenedSource({.source = recordingSource(statedPath(source.path(), settings.input_scene)),
+  return OpenedSource({.source = recordingSource(resolvedPath(source.path(), settings.input_scene)),
                        .cases = {originalCase(settings, options.algorithms)},
                        .original = settings});
 }
@@ -63,7 +63,7 @@ SourceKind kind() {
   return {.what = "settings files of the original Broadmark (.json with m_inputScene)",
           .recognises =
               [](NamedSource& source) {
-                // What has a schema is ours: JSON Lines, too, which are no JSON as a whole.
+                // A file with a schema is ours, even JSON Lines, which are not a single JSON text.
                 return source.isJson() && source.schema().empty() &&
                        isOriginalSettings(source.text(), source.name());
               },

@@ -12,14 +12,14 @@
 
 namespace broadmark {
 
-/// The complaint about a results file without a chosen case; names some that can be chosen.
+/// Error for a results file without a chosen case; suggests some ids.
 InputError missingCase(const Results&, const std::filesystem::path& results_file);
 
-/// A result's case, on what it ran on, to be run again. Throws InputError.
+/// Plan entry that repeats the case of a result on its recording. Throws InputError.
 PlanEntry entryOf(const CaseResult& result, const std::filesystem::path& results_file,
                   const std::vector<Algorithm>& algorithms);
-/// Why entryOf() would fail, as far as that can be told without opening anything; "": nothing is
-/// known that stands in the way.
+/// Reason why entryOf() would fail, as far as can be determined without opening files; "": none
+/// found.
 std::string obstacleTo(const CaseResult& result, const std::filesystem::path& results_file,
                        const std::vector<Algorithm>& algorithms);
 

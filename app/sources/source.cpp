@@ -1,4 +1,4 @@
-// The list of kinds, and what is known of a source before its kind is.
+// The list of source kinds, and operations that do not depend on the kind.
 
 #include "sources/source.h"
 
@@ -30,10 +30,10 @@ std::string kindsText(const std::vector<SourceKind>& kinds) {
   return fmt::format("{}", fmt::join(kinds | std::views::transform(&SourceKind::what), ", "));
 }
 
-/// Whether it opens what is named.
+/// Whether this kind can open the source.
 bool opens(const SourceKind& kind, NamedSource& source) {
   if (!kind.import) return kind.recognises(source);
-  const auto files = imports::filesNamed(source.name(), kind.import->extensions);
+  const auto files = imports::expandName(source.name(), kind.import->extensions);
   return !files.empty() && imports::hasExtension(files.front(), kind.import->extensions);
 }
 
@@ -43,7 +43,7 @@ OpenedSource openWith(const SourceKind& kind, NamedSource& source, const Opening
       {.source = importedSource({source.name()}, *kind.import, options.reading), .cases = {}});
 }
 
-/// What is wrong with a source that is of no kind.
+/// Error for a source that no kind recognises.
 InputError unknownSource(NamedSource& source) {
   if (!source.isFile()) {
     return InputError(unknownName("scene", source.name(), sceneIds()) + ", and no such file");
@@ -122,13 +122,13 @@ std::string importKindsText() {
 }
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
-  for (const auto& [name, value] : options.stated()) {
+  for (const auto& [name, value] : options.changed()) {
     const auto uses = [&, key = name](const PlanEntry& entry) {
       return entry.source.reference.reading.contains(key);
     };
     if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(
-        fmt::format("{}: no source here has a use for it: leave it out", parameterOption(name)));
+        fmt::format("{}: applies to none of the sources: omit it", parameterOption(name)));
   }
 }
 

@@ -1,5 +1,5 @@
-// What a session can be opened on: a scene's name, or a file of some kind. One kind, one file in
-// this folder and one line in the list in CMakeLists.txt.
+// Sources: names of scenes, and files of several kinds. A kind is one file in this folder and one
+// line in the list in CMakeLists.txt.
 #pragma once
 
 #include <filesystem>
@@ -19,25 +19,25 @@
 
 namespace broadmark {
 
-/// A recording before it is opened: everything known without reading or simulating a frame.
+/// A recording before it is opened: metadata that needs no reading or simulating of frames.
 struct Source {
   RecordingReference reference;                  ///< hash and path filled by openRecording()
-  std::unique_ptr<Simulation> simulation;        ///< null for a given recording
-  std::unique_ptr<IndexedFrames> imported = {};  ///< of files that are no recording; else null
-  std::string expected_hash = {};                ///< that the recording must have; "": any
+  std::unique_ptr<Simulation> simulation;        ///< null for an existing recording
+  std::unique_ptr<IndexedFrames> imported = {};  ///< frames of imported files; else null
+  std::string expected_hash = {};                ///< hash the recording must have; "": any
 };
 
-/// A recording with the cases to be run on it.
+/// A recording with the cases to run on it.
 struct PlanEntry {
   Source source;
   std::vector<Case> cases;
-  /// When a settings file of the original names source and case.
+  /// Set if a settings file of the original defines source and case.
   std::optional<OriginalSettings> original = {};
-  /// When source and case are of a results file: the result it holds.
+  /// The previous result, if a results file defines source and case.
   std::optional<CaseResult> known = {};
   std::filesystem::path screenshot = {};  ///< "": none
 
-  /// The first mismatch of the known result, if it has one.
+  /// First mismatch of the previous result, if any.
   [[nodiscard]] std::optional<FrameDifference> knownDifference() const;
 };
 
@@ -46,25 +46,25 @@ struct OpenedSource {
   OpenedSource() = default;
   explicit OpenedSource(PlanEntry entry) { entries.push_back(std::move(entry)); }
 
-  /// Scenes and recordings have no cases of their own.
+  /// Entries of scenes and recordings have no cases yet.
   std::vector<PlanEntry> entries;
-  /// A results file without a chosen case: then there are no entries.
+  /// Set for a results file without a chosen case; `entries` is then empty.
   std::optional<Results> results = {};
 };
 
-/// What was named. Its text is read once and its schema found once, when first needed.
+/// A source given by name. Its text and schema are read lazily, once.
 class NamedSource {
  public:
   explicit NamedSource(std::string name) : name_(std::move(name)) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::filesystem::path path() const { return name_; }
-  /// Whether it means a file: it has an extension or a '/', or there is such a file.
+  /// Whether the name refers to a file: it has an extension or a '/', or the file exists.
   [[nodiscard]] bool isFile() const;
   [[nodiscard]] bool isJson() const;
-  /// The file's text. Throws InputError.
+  /// Returns the file's text. Throws InputError.
   const std::string& text();
-  /// The JSON file's schema, as jsonSchema(). Throws InputError.
+  /// Returns the JSON file's schema, like jsonSchema(). Throws InputError.
   const std::string& schema();
 
  private:
@@ -73,19 +73,19 @@ class NamedSource {
   std::optional<std::string> schema_;
 };
 
-/// What a kind of source may need to be opened.
+/// Options for opening sources of any kind.
 struct OpeningOptions {
-  SceneOptions scene;          ///< of scenes that are simulated
+  SceneOptions scene;          ///< of simulated scenes
   ParameterValues parameters;  ///< --param: of scenes or algorithms
   ReadingOptions reading;
-  std::string case_id;                ///< of a results file; "": none chosen
-  std::vector<Algorithm> algorithms;  ///< all available ones, plug-ins included
+  std::string case_id;                ///< in a results file; "": none chosen
+  std::vector<Algorithm> algorithms;  ///< all available, including plug-ins
 };
 
-/// How files of other programs are read. Several of them are a sequence.
+/// Reader for files of other programs. Several files form a sequence.
 struct FileImport {
   std::vector<std::string> extensions;  ///< in lower case: ".csv"
-  std::vector<std::string> options;     ///< names of the ReadingOptions that it uses
+  std::vector<std::string> options;     ///< names of the ReadingOptions it uses
   /// Throws InputError.
   std::unique_ptr<IndexedFrames> (*open)(const std::vector<std::filesystem::path>&,
                                          const ReadingOptions&);
@@ -93,28 +93,28 @@ struct FileImport {
 
 /// A kind of source: `broadmark::sources::NAME::kind()` for a NAME in the list in CMakeLists.txt.
 struct SourceKind {
-  std::string what;  ///< in help and messages: "recordings (.aabbs, .posrot)"
+  std::string what;  ///< description for help and messages: "recordings (.aabbs, .posrot)"
   bool (*recognises)(NamedSource&) = nullptr;
   OpenedSource (*open)(NamedSource&, const OpeningOptions&) = nullptr;
-  /// Takes the place of the other two: files with these extensions, folders of them, and patterns.
+  /// Replaces both functions for files with these extensions, folders of them, and patterns.
   std::optional<FileImport> import = {};
 };
 std::vector<SourceKind> sourceKinds();
-/// What all of them are, for help and messages: "built-in scenes (freefall, …), recordings …".
+/// Text for help and messages: "built-in scenes (freefall, …), recordings …".
 std::string sourceKindsText();
 
-/// Whether it is a built-in scene's id, or means a file.
+/// Whether the name is a built-in scene's id or refers to a file.
 bool isSource(const std::string& name);
 
-/// Opens what is named, by the first kind that recognises it. Throws InputError.
+/// Opens a source by the first kind that recognises it. Throws InputError.
 OpenedSource openSource(const std::string& name, const OpeningOptions&);
 
-/// How to import what is named; nothing if that is no file of another program.
+/// Returns how to import a source; nothing if it is not a file of another program.
 std::optional<FileImport> importOf(const std::string& name);
-/// The kinds of files that can be imported, for help and messages.
+/// Kinds of files that can be imported, for help and messages.
 std::string importKindsText();
 
-/// Throws InputError for a reading option that none of these sources uses.
+/// Throws InputError for a reading option that applies to none of these sources.
 void requireReadingUsed(ReadingOptions, const std::vector<PlanEntry>&);
 
 }  // namespace broadmark

@@ -1,6 +1,6 @@
-// Particle trajectories in XYZ files: of each frame the number of particles, a comment, and a line
-// for each particle: its element and x y z. An extended XYZ file says in its comment, as
-// Properties=species:S:1:pos:R:3:radius:R:1, which column is what.
+// Particle trajectories in XYZ files: for each frame the number of particles, a comment, and a line
+// per particle with its element and x y z. In an extended XYZ file the comment describes the
+// columns: Properties=species:S:1:pos:R:3:radius:R:1.
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ ParticleColumns columnsOf(const LineReader& lines) {
   constexpr std::int64_t kMaxColumns = 1000;
   const std::size_t key = lines.line().find(kKey);
   ParticleColumns columns{.what = "particle",
-                          .no_radius = "states no radius: say it with --radius",
+                          .no_radius = "states no radius: set it with --radius",
                           .position = {1, 2, 3},
                           .count = 4};
   if (key == std::string_view::npos) return columns;
@@ -59,7 +59,7 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
                                     const ReadingOptions& options) {
-  // A particle is known by its place in the frame: all frames have the same ones.
+  // Particles are identified by their index, so all frames must have the same number.
   const auto format = [radius = options.radius, particles = std::optional<std::size_t>()](
                           LineReader& lines, TextFrame& frame) mutable {
     if (!readFrame(lines, frame, radius)) return false;

@@ -1,4 +1,4 @@
-// Parts that can be left out of a build, in messages.
+// Messages about optional parts that a build lacks.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace broadmark {
 inline std::string leftOut(const BuildPart& part) {
   return fmt::format("this build has no {} ({}=OFF)", part.name, part.option);
 }
-/// Throws InputError if a part that `option` needs has been left out of this build.
+/// Throws InputError if this build lacks the part that `option` needs.
 inline void requirePart(const BuildPart& part, std::string_view option) {
   if (!part.included) throw InputError(fmt::format("{}: {}", option, leftOut(part)));
 }

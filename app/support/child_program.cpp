@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kKept = std::size_t{64} << 10;  // of what is printed
-constexpr int kBetweenQueries = 100;                  // milliseconds
+constexpr std::size_t kMaxOutput = std::size_t{64} << 10;  // bytes; older output is dropped
+constexpr int kPollTimeout = 100;                          // milliseconds
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -32,7 +32,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// Ours, with some that are set.
+/// The environment of this process with some variables added or replaced.
 std::vector<std::string> environment(
     const std::vector<std::pair<std::string, std::string>>& variables) {
   std::vector<std::string> all;
@@ -47,7 +47,7 @@ std::vector<std::string> environment(
   return all;
 }
 
-/// Starts a process in a group of its own, with both outputs redirected to `output`.
+/// Starts a process in its own process group, with stdout and stderr redirected to `output`.
 pid_t spawn(std::vector<std::string> command, std::vector<std::string> environment, int output) {
   posix_spawn_file_actions_t actions{};
   posix_spawnattr_t attributes{};
@@ -77,19 +77,19 @@ int statusOf(pid_t pid) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// Reads until all writers have closed the pipe; nothing when cancelled before that.
+/// Reads until all writers have closed the pipe. Returns nothing if cancelled before.
 std::optional<std::string> readAll(const FileDescriptor& from, const CancelQuery& cancelled) {
   std::string printed;
   std::array<char, 4096> buffer{};
   while (true) {
     if (cancelled && cancelled()) return {};
     pollfd waiting{.fd = from.get(), .events = POLLIN, .revents = 0};
-    if (::poll(&waiting, 1, kBetweenQueries) <= 0) continue;
+    if (::poll(&waiting, 1, kPollTimeout) <= 0) continue;
     const ssize_t size = ::read(from.get(), buffer.data(), buffer.size());
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) return printed;
     printed.append(buffer.data(), static_cast<std::size_t>(size));
-    if (printed.size() > 2 * kKept) printed.erase(0, printed.size() - kKept);
+    if (printed.size() > 2 * kMaxOutput) printed.erase(0, printed.size() - kMaxOutput);
   }
 }
 
@@ -98,12 +98,12 @@ std::optional<std::string> readAll(const FileDescriptor& from, const CancelQuery
 ProgramEnd runProgram(std::vector<std::string> command,
                       const std::vector<std::pair<std::string, std::string>>& variables,
                       const CancelQuery& cancelled) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw InputError(fmt::format("{}: no pipe: {}", command.front(), std::strerror(errno)));
+  std::array<int, 2> pipe_ends{};
+  if (::pipe2(pipe_ends.data(), O_CLOEXEC) != 0) {
+    throw InputError(fmt::format("{}: pipe failed: {}", command.front(), std::strerror(errno)));
   }
-  const FileDescriptor reading(ends[0]);
-  FileDescriptor writing(ends[1]);
+  const FileDescriptor reading(pipe_ends[0]);
+  FileDescriptor writing(pipe_ends[1]);
   const pid_t pid = spawn(std::move(command), environment(variables), writing.get());
   { const FileDescriptor closed = std::move(writing); }
   std::optional<std::string> printed = readAll(reading, cancelled);
@@ -115,22 +115,22 @@ ProgramEnd runProgram(std::vector<std::string> command,
   return {.status = statusOf(pid), .printed = std::move(*printed)};
 }
 
-bool isProgramThere(const std::string& name) {
+bool isProgramInPath(const std::string& name) {
   const char* const path = std::getenv("PATH");
   return path != nullptr && std::ranges::any_of(splitAt(':', path), [&](const fs::path& folder) {
            return ::access((folder / name).c_str(), X_OK) == 0;
          });
 }
 
-void openByDesktop(const fs::path& file) {
+void openWithDesktop(const fs::path& file) {
   if (isSandboxed()) {
     throw InputError(
         fmt::format("{}: scripts may not open files with other programs", file.string()));
   }
-  // A session of its own: the child outlives this program and is not waited for.
-  const FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+  // In its own session, so that the child outlives this program.
+  const FileDescriptor null_device(::open("/dev/null", O_WRONLY | O_CLOEXEC));
   const pid_t pid = spawn({"setsid", "--fork", "xdg-open", fs::absolute(file).string()},
-                          environment({}), nowhere.get());
+                          environment({}), null_device.get());
   if (statusOf(pid) != 0) {
     throw InputError(fmt::format("{}: cannot be opened from here", file.string()));
   }

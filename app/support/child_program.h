@@ -1,4 +1,4 @@
-// Other programs that this one calls.
+// Runs other programs.
 #pragma once
 
 #include <filesystem>
@@ -10,24 +10,24 @@
 
 namespace broadmark {
 
-/// How a program ended.
+/// Exit status and output of a program.
 struct ProgramEnd {
-  int status = 0;       ///< its exit status; killed by a signal: 128 and its number, as in a shell
-  std::string printed;  ///< to either output, its last part
+  int status = 0;       ///< 128 + signal number if a signal killed the program, as in a shell
+  std::string printed;  ///< the end of its output on stdout and stderr
 };
 
-/// Runs a program, found as a shell finds it, to its end, with these environment variables besides
-/// ours. Throws InputError when it cannot be started; when it is cancelled, ends it and what it has
-/// started, and throws Cancelled.
+/// Runs a program, searched for in PATH, until it exits, with these environment variables added to
+/// our own. Throws InputError if it cannot be started. When cancelled, kills the program and its
+/// children, and throws Cancelled.
 ProgramEnd runProgram(std::vector<std::string> command,
                       const std::vector<std::pair<std::string, std::string>>& variables = {},
                       const CancelQuery& cancelled = {});
 
-/// Whether a program of this name can be run.
-bool isProgramThere(const std::string& name);
+/// Whether PATH has an executable program of this name.
+bool isProgramInPath(const std::string& name);
 
-/// Opens a file with whatever the desktop opens such files with, and does not wait for its end.
-/// Throws InputError, also while a script is played.
-void openByDesktop(const std::filesystem::path& file);
+/// Opens a file with the desktop's default program, without waiting for it to exit. Throws
+/// InputError, also while a script is running.
+void openWithDesktop(const std::filesystem::path& file);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// A signal handler can only set a global.
+// The signal handler only sets a global variable.
 
 #include "support/interrupt.h"
 
@@ -10,9 +10,8 @@
 namespace broadmark {
 namespace {
 
-// When the first signal came; 0: none did. Several threads read it, and any of them may be
-// interrupted by the signal.
-std::atomic<std::int64_t> first_at_ns = 0;
+// Time of the first signal; 0: none. Several threads read it, and the signal may interrupt any.
+std::atomic<std::int64_t> first_signal_ns = 0;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler must not wait");
 
 std::int64_t nowNs() {
@@ -22,11 +21,11 @@ std::int64_t nowNs() {
 }
 
 void onSignal(int signal) {
-  // timeout(1) signals a process and its group: two signals at once are one wish.
-  constexpr std::int64_t kAtOnceNs = 300'000'000;
+  // timeout(1) signals a process and its group: simultaneous signals are a single request.
+  constexpr std::int64_t kSimultaneousNs = 300'000'000;
   const std::int64_t now = nowNs();
   std::int64_t first = 0;
-  if (first_at_ns.compare_exchange_strong(first, now) || now - first < kAtOnceNs) return;
+  if (first_signal_ns.compare_exchange_strong(first, now) || now - first < kSimultaneousNs) return;
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -34,7 +33,7 @@ void onSignal(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
-  first_at_ns = 0;
+  first_signal_ns = 0;
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
 }
@@ -44,6 +43,6 @@ InterruptGuard::~InterruptGuard() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-bool InterruptGuard::requested() { return first_at_ns != 0; }
+bool InterruptGuard::requested() { return first_signal_ns != 0; }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Ctrl-C and termination: the first signal asks for a clean end, the second ends at once.
+// Ctrl-C and termination: the first signal requests a clean shutdown, the second exits immediately.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,16 +8,15 @@
 
 namespace broadmark {
 
-/// Thrown out of a command that the user has ended: no fault of anybody's. The message says what is
-/// kept.
+/// Thrown when the user interrupts a command; not an error. The message states what was saved.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
-  explicit Interrupted(const std::string& kept)
-      : std::runtime_error(fmt::format("interrupted: {}", kept)) {}
+  explicit Interrupted(const std::string& saved)
+      : std::runtime_error(fmt::format("interrupted: {}", saved)) {}
 };
 
-/// Handles SIGINT and SIGTERM while it lives. At most one lives at a time.
+/// Handles SIGINT and SIGTERM during its lifetime. Only one instance may exist at a time.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -25,7 +24,7 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  /// Whether a clean end has been asked for. Any thread may call it.
+  /// Whether a clean shutdown has been requested. Thread-safe.
   [[nodiscard]] static bool requested();
 };
 

@@ -23,7 +23,7 @@ std::string readInput(const std::filesystem::path& path) {
 
 void writeOutput(const std::filesystem::path& path, std::string_view text) {
   if (!isStandardOutput(path)) return writeTextFile(path, text);
-  // main() says so if it cannot be written.
+  // main() reports write errors.
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 

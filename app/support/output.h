@@ -1,4 +1,4 @@
-// Where a command writes its results: a file, or standard output.
+// Output of a command's results, to a file or to standard output.
 #pragma once
 
 #include <filesystem>
@@ -7,17 +7,17 @@
 
 namespace broadmark {
 
-/// Whether a path given for a file means standard output: "-" or /dev/stdout. Then nothing else is
-/// printed there.
+/// Whether the path of an output file means standard output: "-" or /dev/stdout. Commands then
+/// print nothing else to it.
 bool isStandardOutput(const std::filesystem::path&);
 
-/// Throws InputError if nothing can be written there: to fail now rather than after long work.
+/// Throws InputError if the path is not writable, to fail before long work.
 void requireOutput(const std::filesystem::path&);
 
-/// The text of a file, or of standard input for "-". Throws InputError.
+/// Reads a file, or standard input for "-". Throws InputError.
 std::string readInput(const std::filesystem::path&);
 
-/// Writes a whole text; a file atomically. Throws InputError.
+/// Writes a text; to a file atomically. Throws InputError.
 void writeOutput(const std::filesystem::path&, std::string_view text);
 
 }  // namespace broadmark

@@ -21,18 +21,18 @@ double seconds(std::chrono::steady_clock::duration d) {
 
 constexpr const char* kEraseLine = "\r\033[K";
 
-/// Columns of the terminal on standard error.
+/// Number of columns of the terminal on standard error.
 std::size_t terminalWidth() {
   winsize size{};
-  constexpr std::size_t kUsual = 80;
-  return ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+  constexpr std::size_t kDefaultWidth = 80;
+  return ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kDefaultWidth;
 }
 
-/// A text cut to at most `bytes`, with dots at its end if it was longer.
+/// Truncates a text to at most `bytes`, with dots at its end if it was longer.
 std::string shortened(const std::string& text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   std::size_t end = bytes > 3 ? bytes - 3 : 0;
-  // Never cut within a character of UTF-8.
+  // Never split a UTF-8 character.
   while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
   return text.substr(0, end) + std::string(std::min<std::size_t>(bytes, 3), '.');
 }
@@ -44,22 +44,22 @@ Progress::Progress(std::string task, std::uint64_t steps, bool quiet)
 
 Progress::~Progress() {
   if (quiet_) return;
-  // What has been interrupted is not done, however far it got.
-  const bool whole = done_ >= steps_ && !InterruptGuard::requested();
+  // An interrupted task is not done, however far it got.
+  const bool is_complete = done_ >= steps_ && !InterruptGuard::requested();
   const double share =
       static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>({steps_, done_, 1}));
   fmt::print(stderr, "{}{}: {} ({})\n", terminal_ ? kEraseLine : "", task_,
-             whole ? "done" : fmt::format("stopped at {:.0f} %", std::floor(100 * share)),
+             is_complete ? "done" : fmt::format("stopped at {:.0f} %", std::floor(100 * share)),
              waitingTime(seconds(Clock::now() - start_)));
 }
 
 void Progress::update(std::uint64_t done) {
   done_ = done;
   if (!isDue()) return;
-  const double so_far = seconds(Clock::now() - start_);
-  const double ratio = static_cast<double>(steps_ - std::min(done, steps_)) /
-                       static_cast<double>(std::max<std::uint64_t>(done, 1));
-  draw(so_far * ratio);
+  const double elapsed = seconds(Clock::now() - start_);
+  const double left_per_done = static_cast<double>(steps_ - std::min(done, steps_)) /
+                               static_cast<double>(std::max<std::uint64_t>(done, 1));
+  draw(elapsed * left_per_done);
 }
 
 void Progress::update(std::uint64_t done, double seconds_left) {
@@ -77,7 +77,7 @@ void Progress::print(std::FILE* stream, std::string_view line) {
 }
 
 bool Progress::isDue() const {
-  // A terminal should look alive; a log should not fill up.
+  // Frequent updates on a terminal, few lines in a log.
   const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(15);
   return !quiet_ && Clock::now() - drawn_ >= interval;
 }
@@ -90,14 +90,14 @@ void Progress::draw(double seconds_left) {
   const std::string left =
       done_ == 0 ? "" : fmt::format(", about {} left", waitingTime(seconds_left));
   const std::string state = fmt::format(": {:.0f} %{}", 100 * share, left);
-  std::string what = task_ + (detail_.empty() ? "" : " " + detail_);
+  std::string text = task_ + (detail_.empty() ? "" : " " + detail_);
   if (terminal_) {
-    // A line that wraps could not be erased again.
-    const std::size_t room = terminalWidth() - 1;
-    what = shortened(what, room > state.size() ? room - state.size() : 0);
-    fmt::print(stderr, "{}{}{}", kEraseLine, what, state);
+    // A wrapped line could not be erased.
+    const std::size_t width = terminalWidth() - 1;
+    text = shortened(text, width > state.size() ? width - state.size() : 0);
+    fmt::print(stderr, "{}{}{}", kEraseLine, text, state);
   } else {
-    fmt::print(stderr, "{}{}\n", what, state);
+    fmt::print(stderr, "{}{}\n", text, state);
   }
   std::fflush(stderr);
 }

@@ -12,22 +12,22 @@
 
 namespace broadmark {
 
-/// Receives the progress of long work, and may end it.
+/// Receives the progress of long work, and may cancel it.
 class TaskObserver {
  public:
   virtual ~TaskObserver() = default;
 
-  /// Asked between steps; true ends the work.
+  /// Called between steps; returning true ends the work.
   virtual bool cancelled() = 0;
-  /// A task with this number of steps starts; the previous task has ended.
+  /// Called when a task with this number of steps starts; the previous task has ended.
   virtual void onTaskStart(const std::string& task, std::uint64_t steps) = 0;
-  /// `done` of its steps are done; `detail` names the present one.
+  /// Called when `done` steps of the task are done; `detail` names the current one.
   virtual void onProgress(std::uint64_t done, const std::string& detail = {}) = 0;
 };
 
-/// Shows on standard error how far a task is. On a terminal it rewrites one line, cut to the
-/// terminal's width; elsewhere it prints a line now and then, and one when the task ends. Shows
-/// nothing when `quiet`.
+/// Shows the progress of a task on standard error: on a terminal as a single line, truncated to the
+/// terminal's width; else as a line every 15 seconds, and one when the task ends. Shows nothing if
+/// `quiet`.
 class Progress {
  public:
   Progress(std::string task, std::uint64_t steps, bool quiet);
@@ -35,21 +35,21 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Names the present step.
+  /// Sets the name of the current step.
   void detail(std::string text) { detail_ = std::move(text); }
-  /// `done` of the steps are done. The time left is estimated from the pace so far.
+  /// Sets the number of finished steps, and extrapolates the time left.
   void update(std::uint64_t done);
-  /// The same with a better estimate of the time left.
+  /// Same with a better estimate of the time left.
   void update(std::uint64_t done, double seconds_left);
-  /// update(), for work that can be interrupted: false once it has been.
-  bool goOn(std::uint64_t done) {
+  /// Like update(), for interruptible work: returns false once the user has interrupted it.
+  bool advance(std::uint64_t done) {
     update(done);
     return !InterruptGuard::requested();
   }
 
   /// Prints a line on standard output or error without disturbing the progress line.
   void print(std::string_view line) { print(stdout, line); }
-  void complain(std::string_view line) { print(stderr, line); }
+  void printError(std::string_view line) { print(stderr, line); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -76,14 +76,14 @@ class TerminalTasks : public Observer {
 
   bool cancelled() override { return InterruptGuard::requested(); }
   void onTaskStart(const std::string& task, std::uint64_t steps) override {
-    end();  // its last line comes before the next one's first
+    end();  // prints the previous task's last line before this one's first
     progress_.emplace(task, steps, quiet_);
   }
   void onProgress(std::uint64_t done, const std::string& detail = {}) override {
     progress_->detail(detail);
     progress_->update(done);
   }
-  /// The present task has ended.
+  /// Ends the current task.
   void end() { progress_.reset(); }
 
  private:

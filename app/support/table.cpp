@@ -15,13 +15,13 @@
 namespace broadmark {
 namespace {
 
-/// Characters, not bytes, of UTF-8 text.
+/// Number of UTF-8 characters.
 std::size_t width(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// The column of which a table shows only what differs.
+/// Key of the column that shows only parameters that differ between cases.
 constexpr std::string_view kParameters = "params";
 
 /// A result with its summary, computed once.
@@ -29,27 +29,27 @@ struct Row {
   const CaseResult* result;
   Summary summary;
 
-  [[nodiscard]] bool timed() const {
+  [[nodiscard]] bool isTimed() const {
     return std::ranges::any_of(result->repetitions,
                                [](const Repetition& pass) { return !pass.frames.empty(); });
   }
-  [[nodiscard]] bool right() const { return timed() && result->status == Status::ok; }
+  [[nodiscard]] bool isCorrect() const { return isTimed() && result->status == Status::ok; }
 };
 
 std::vector<Row> sortedRows(std::span<const CaseResult> results) {
   std::vector<Row> rows;
   for (const CaseResult& result : results) rows.push_back({&result, result.summary()});
-  // The right ones first, by median: a disturbance hits the mean. Self-checks, which find no pairs,
-  // last.
+  // Correct results first, by median, as disturbances distort the mean; self-checks, which find no
+  // pairs, last.
   std::ranges::stable_sort(rows, {}, [](const Row& row) {
-    const bool self_check = row.timed() && !row.result->checked;
+    const bool self_check = row.isTimed() && !row.result->checked;
     const double untimed = std::numeric_limits<double>::infinity();
-    return std::tuple(self_check, !row.right(), row.timed() ? row.summary.median : untimed);
+    return std::tuple(self_check, !row.isCorrect(), row.isTimed() ? row.summary.median : untimed);
   });
   return rows;
 }
 
-/// What tells the cases of one algorithm apart: those of their parameters that differ.
+/// Parameters that differ between the cases of an algorithm, with their values.
 std::string variedParameters(const CaseResult& result, std::span<const CaseResult> all) {
   std::string text;
   for (const auto& [name, value] : result.parameters) {
@@ -78,19 +78,19 @@ std::string cellText(const CaseColumn& column, const CaseResult& result, const S
                                             : fmt::format("{:.0f}", *number);
 }
 
-std::string wrapped(const std::string& text, std::size_t begun, std::size_t indent) {
+std::string wrapped(const std::string& text, std::size_t start_column, std::size_t indent) {
   std::string lines;
-  std::size_t column = begun;
+  std::size_t column = start_column;
   bool first = true;
   std::istringstream words(text);
   for (std::string word; words >> word; first = false) {
-    const std::size_t room = width(word) + (first ? 0 : 1);
-    if (!first && column + room > kWidestLine) {
+    const std::size_t added = width(word) + (first ? 0 : 1);
+    if (!first && column + added > kMaxLineWidth) {
       lines += fmt::format("\n{:{}}{}", "", indent, word);
       column = indent + width(word);
     } else {
       lines += fmt::format("{}{}", first ? "" : " ", word);
-      column += room;
+      column += added;
     }
   }
   return lines;
@@ -132,7 +132,7 @@ std::string formatTable(std::span<const CaseResult> results) {
   }
   if (results.front().answer == AnswerKind::events) text += ", events";
   text += '\n';
-  std::vector<const CaseColumn*> columns = caseColumns(&ColumnShown::terminal);
+  std::vector<const CaseColumn*> columns = caseColumns(&ColumnDisplay::terminal);
   const auto is_varied = [&](const CaseResult& result) {
     return !variedParameters(result, results).empty();
   };
@@ -146,7 +146,7 @@ std::string formatTable(std::span<const CaseResult> results) {
     right_aligned.push_back(!column->isText());
   }
   const std::vector<Row> rows = sortedRows(results);
-  const auto competes = [](const Row& row) { return row.right() && row.result->checked; };
+  const auto competes = [](const Row& row) { return row.isCorrect() && row.result->checked; };
   const auto fastest = std::ranges::find_if(rows, competes);
   for (auto row = rows.begin(); row != rows.end(); ++row) {
     std::vector<std::string>& cells = table.emplace_back();

@@ -1,4 +1,4 @@
-// Results as tables for people.
+// Results as human-readable tables.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,23 @@
 
 namespace broadmark {
 
-/// What a column says of a case; "–" where that is not known.
+/// Text of a column for a case; "–" if unknown.
 std::string cellText(const CaseColumn&, const CaseResult&, const Summary&,
                      std::string (*seconds_text)(double) = durationText);
 
-/// The cases of one recording, sorted by their medians, the fastest right one marked.
+/// Formats the cases of one recording, sorted by median, with the fastest correct one marked.
 std::string formatTable(std::span<const CaseResult>);
 
 /// Maximum width of lines in lists, unless a single word is longer.
-inline constexpr std::size_t kWidestLine = 100;
+inline constexpr std::size_t kMaxLineWidth = 100;
 
-/// Wraps a text between words: the first line starts in column `begun`, the others in `indent`.
-std::string wrapped(const std::string& text, std::size_t begun, std::size_t indent);
+/// Wraps a text between words: the first line starts in `start_column`, the others in `indent`.
+std::string wrapped(const std::string& text, std::size_t start_column, std::size_t indent);
 
 enum class LastColumn { whole, wrapped };
 
-/// Rows with aligned columns, to the right where `right_aligned` says so. The last one may be
-/// wrapped, below itself.
+/// Formats rows with aligned columns, `right_aligned` or to the left. The last column may be
+/// wrapped.
 std::string alignColumns(const std::vector<std::vector<std::string>>& rows,
                          const std::vector<bool>& right_aligned,
                          LastColumn last = LastColumn::whole);

@@ -1,4 +1,4 @@
-// Texts and numbers as people read and write them.
+// Formatting and parsing of human-readable texts and numbers.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,16 @@
 
 namespace broadmark {
 
-/// The number that the text is, and nothing else.
+/// Parses a text that is a number and nothing else.
 std::optional<double> numberIn(std::string_view text);
 
 /// "1.25 MB"
 std::string bytesText(std::uint64_t bytes);
 
-/// "1 case", "2 cases"; of "body" the plural is stated.
+/// "1 case", "2 cases"; an irregular plural ("bodies") must be given.
 std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural = {});
 
-/// Calls visit(part) for each part of the text between separators, empty ones included.
+/// Calls visit(part) for each part of the text between separators, including empty parts.
 template <class Visit>
 void forEachPart(char separator, std::string_view text, const Visit& visit) {
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -32,14 +32,14 @@ void forEachPart(char separator, std::string_view text, const Visit& visit) {
   }
 }
 
-/// The parts of the text between separators, empty ones included.
+/// Returns the parts of the text between separators, including empty parts.
 std::vector<std::string> splitAt(char separator, std::string_view text);
 
-/// The text with these characters replaced.
+/// Returns the text with these characters replaced.
 std::string escaped(std::string_view text,
                     std::initializer_list<std::pair<char, std::string_view>> replacements);
 
-/// A word as a shell takes it: in single quotes where it needs them.
+/// Quotes a shell word with single quotes if necessary.
 std::string shellQuoted(const std::string& text);
 
 /// "3 bodies, 1 frame"
