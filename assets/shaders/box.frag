@@ -3,7 +3,7 @@
 uniform vec3 haze;
 uniform float focus;  // distance from the eye to what it looks at
 
-// The look of boxes, from look.h.
+// The shading of boxes, from shading.h.
 uniform float edge_pixels;
 uniform float edge_darkness;
 uniform float foot_darkness;

@@ -5,7 +5,7 @@ uniform mat4 view_projection;
 uniform vec3 eye;
 uniform float pixel;  // length that a pixel covers at distance 1
 
-// The look of boxes, from look.h.
+// The shading of boxes, from shading.h.
 uniform vec3 light;             // brightness by the face's axis
 uniform float underside;        // brightness of the face that looks down
 

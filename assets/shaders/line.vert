@@ -4,7 +4,7 @@ uniform samplerBuffer primitives;
 uniform mat4 view_projection;
 uniform vec3 eye;
 uniform vec2 viewport;  // pixels
-uniform float lift;     // part of the way to the eye, from look.h
+uniform float lift;     // part of the way to the eye, from shading.h
 
 noperspective out float across;  // pixels from the middle of the line
 flat out float half_width;       // pixels

@@ -48,7 +48,7 @@ TEST(Session, Defaults) {
   EXPECT_THAT(options.scene.parameters, IsEmpty());
   EXPECT_THAT(options.scene.recorders, IsEmpty());
   EXPECT_THAT(options.cases.algorithms, IsEmpty());
-  EXPECT_EQ(options.repetitions.most, 1);
+  EXPECT_EQ(options.repetitions.max_count, 1);
   EXPECT_EQ(options.repetitions.warmup, 0);
   EXPECT_EQ(options.policy.check, CheckMode::full);
   EXPECT_EQ(options.policy.frame_limit_seconds, 0.5);
@@ -137,7 +137,7 @@ TEST(Session, ValuesAreUnderstood) {
                                           "2.5",
                                           "--memory-limit",
                                           "0.5"});
-  EXPECT_EQ(options.repetitions.most, 5);
+  EXPECT_EQ(options.repetitions.max_count, 5);
   EXPECT_EQ(options.repetitions.warmup, 2);
   EXPECT_EQ(options.policy.frame_limit_seconds, 1e-3);
   EXPECT_EQ(options.policy.check, CheckMode::hash);
@@ -163,7 +163,7 @@ TEST(Session, AutomaticRepetitions) {
   const SessionOptions options = session(
       {"--repetitions", "auto", "--precision", "1%", "--max-seconds", "60", "--order-seed", "7"});
   EXPECT_TRUE(options.repetitions.until_precise);
-  EXPECT_EQ(options.repetitions.most, RepetitionOptions::kMaxUntilPrecise);
+  EXPECT_EQ(options.repetitions.max_count, RepetitionOptions::kMaxUntilPrecise);
   EXPECT_EQ(options.repetitions.precision, 0.01);
   EXPECT_EQ(options.repetitions.max_seconds, 60);
   EXPECT_EQ(options.repetitions.order_seed, 7U);

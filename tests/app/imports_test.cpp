@@ -146,7 +146,8 @@ TEST_F(Imports, WhatIsWrongWithLammps) {
   const auto wrong = [&](const std::string& text) { return complaint("a.dump", text); };
   EXPECT_THAT(wrong("hello\n"), HasSubstr("line 1: 'ITEM: …' is expected"));
   EXPECT_THAT(wrong(dump("0", "1", "id x y z\n1 0 0 0\n")), HasSubstr("--radius"));
-  EXPECT_THAT(wrong(dump("0", "1", "id x y radius\n1 0 0 0\n")), HasSubstr("line 9: no columns"));
+  EXPECT_THAT(wrong(dump("0", "1", "id x y radius\n1 0 0 0\n")),
+              HasSubstr("line 9: no position columns"));
   EXPECT_THAT(wrong(dump("0", "2", "id x y z radius\n1 0 0 0 1\n")), HasSubstr("atom 2 of 2"));
   EXPECT_THAT(wrong(dump("0", "2", "id x y z radius\n1 0 0 0 1\n1 0 0 0 1\n")),
               HasSubstr("line 11: 1 is already in this frame"));

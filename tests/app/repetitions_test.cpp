@@ -26,26 +26,26 @@ CaseResult resultOfFrames(const std::vector<std::int64_t>& ns) {
 }
 
 TEST(RepetitionRule, AFixedNumberIsRunWhateverTheTimesAre) {
-  const RepetitionOptions options{.most = 6};
+  const RepetitionOptions options{.max_count = 6};
   const RepetitionRule rule(options);
   EXPECT_FALSE(rule.isEnough(resultOfFrames({100, 100, 100, 100, 100})));
   EXPECT_TRUE(rule.isEnough(resultOfFrames({100, 100, 900, 100, 100, 100})));
-  EXPECT_EQ(rule.wanted(resultOfFrames({100})), 6);
+  EXPECT_EQ(rule.expected(resultOfFrames({100})), 6);
 }
 
 TEST(RepetitionRule, AutoEndsWhenTheMeanIsKnown) {
-  const RepetitionOptions options{.most = 9, .until_precise = true, .precision = 0.02};
+  const RepetitionOptions options{.max_count = 9, .until_precise = true, .precision = 0.02};
   const RepetitionRule rule(options);
   EXPECT_FALSE(rule.isEnough(resultOfFrames({1000, 1000, 1000, 1000}))) << "too few";
   EXPECT_TRUE(rule.isEnough(resultOfFrames({1000, 1000, 1000, 1000, 1000})));
   EXPECT_TRUE(rule.isEnough(resultOfFrames({1000, 1003, 997, 1005, 998})));
   EXPECT_FALSE(rule.isEnough(resultOfFrames({1000, 1030, 970, 1050, 980})));
   EXPECT_TRUE(rule.isEnough(resultOfFrames({1, 5, 1, 5, 1, 5, 1, 5, 1}))) << "the most";
-  EXPECT_EQ(rule.wanted(resultOfFrames({1, 1, 1, 1, 1})), 5);
+  EXPECT_EQ(rule.expected(resultOfFrames({1, 1, 1, 1, 1})), 5);
 }
 
 TEST(RepetitionRule, AutoEndsWhenTimeIsUpButNotBeforeFive) {
-  const RepetitionOptions options{.most = 9, .until_precise = true, .max_seconds = 0};
+  const RepetitionOptions options{.max_count = 9, .until_precise = true, .max_seconds = 0};
   const RepetitionRule rule(options);
   EXPECT_FALSE(rule.isEnough(resultOfFrames({1, 5, 1, 5})));
   EXPECT_TRUE(rule.isEnough(resultOfFrames({1, 5, 1, 5, 1})));

@@ -103,7 +103,7 @@ bool worlds(int rounds) {
     WorldContest::Entrant apart = {.name = "apart"};
     std::vector<std::unique_ptr<CaseExecutor>> hosts;
     for (std::uint32_t world = 0; world < all.worlds(); ++world) {
-      hosts.push_back(makeLocalHost(caseOf(id), {}));
+      hosts.push_back(makeInProcessExecutor(caseOf(id), {}));
       hosts.back()->start(all.worldScene(), all.worldFrame(world));
     }
     for (int round = -3; round < rounds; ++round) {

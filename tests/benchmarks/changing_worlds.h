@@ -207,7 +207,8 @@ class WorldContest {
  public:
   /// Starts the case; if it cannot run, prints the reason and returns false. Borrows `world`.
   bool add(std::string name, const Case& entered, LivingWorld& world) {
-    Entrant added = {.name = std::move(name), .host = makeLocalHost(entered, {}), .world = &world};
+    Entrant added = {
+        .name = std::move(name), .host = makeInProcessExecutor(entered, {}), .world = &world};
     try {
       added.start_ns = added.host->start(world.scene(), world.frame());
     } catch (const std::exception& error) {

@@ -66,8 +66,9 @@ class Contest {
 
   /// Throws InputError (parameters) and UnsupportedError.
   void add(std::string name, const Case& entered,
-           const ExecutorFactory& make_host = makeLocalHost) {
-    Contestant added = {std::move(name), make_host(entered, {}), makeInstance(entered)->margin()};
+           const ExecutorFactory& make_executor = makeInProcessExecutor) {
+    Contestant added = {std::move(name), make_executor(entered, {}),
+                        makeInstance(entered)->margin()};
     added.host->start(scene_, changed_bodies_.complete({0, frames_[0]}));
     contestants_.push_back(std::move(added));
   }

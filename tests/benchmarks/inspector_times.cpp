@@ -67,11 +67,11 @@ constexpr int kHeight = 720;
 struct Watched {
   Watched(const Gl& gl, const Setting& setting)
       : target(gl, kWidth, kHeight, 1), inspector(gl, builtinAlgorithms(), {}, 1) {
-    session().draft.take(simulationOf(setting));
+    session().draft.adopt(simulationOf(setting));
     session().draft.simulate();
     TrackEdit& track = session().tracks.add(setting.algorithm);
     track.test_case.threads = 1;
-    session().tracks.changed();
+    session().tracks.applyEdits();
   }
 
   [[nodiscard]] Session& session() { return inspector.session(); }
@@ -124,7 +124,7 @@ void printSeekTimes(const Gl& gl, const Seek& seek, const std::string& crowd,
 void showEverything(Session& session) {
   session.tracks.add("grid2d-sap");
   DisplayOptions& view = session.display;
-  view.pair_lines = view.lines_of_all = view.xray = view.structure = true;
+  view.pair_lines = view.all_pair_lines = view.xray = view.structure = true;
   view.structure_near = false;
   view.filter = {.largest = 1e6};
   session.selection.select({0, 1, 2, 3});

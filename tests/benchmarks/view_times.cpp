@@ -70,7 +70,7 @@ void measure(const Gl& gl, Technique technique, std::size_t count, int width, in
   content.boxes = boxes;
   content.colours = colouring.colours;
   const OrbitCamera camera =
-      focusedOn(lookedFrom({}, Direction::figure), content.space.toView(content.world),
+      focusedOn(viewedFrom({}, Direction::figure), content.space.toView(content.world),
                 static_cast<double>(width) / height);
   view.draw(content, camera);
   gl.Finish();

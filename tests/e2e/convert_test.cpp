@@ -97,7 +97,7 @@ TEST_F(Convert, SaysWhatAabbsCannotHold) {
 }
 
 TEST_F(Convert, RefusesWhatMakesNoSense) {
-  expectRefusal({"convert", boxes_, boxes_}, {"is the recording itself"});
+  expectRefusal({"convert", boxes_, boxes_}, {"is the input recording"});
   expectRefusal({"convert", boxes_, "a.posrot"}, {"a.posrot", ".aabbs or .broadmark"});
   expectRefusal({"convert", boxes_, "a.json"}, {"a.json", ".aabbs or .broadmark"});
   expectRefusal({"convert", "gone.aabbs", "a.broadmark"}, {"gone.aabbs", "No such file"});

@@ -76,7 +76,7 @@ void expectSameAnswers(const Case& test_case) {
     EXPECT_EQ(there->setup().size(), here.setup().size());
     const RecordedDrawing drawn = there->structure();
     const RecordedDrawing expected = here.structure();
-    EXPECT_EQ(drawn.leftOut(), expected.leftOut());
+    EXPECT_EQ(drawn.dropped(), expected.dropped());
     EXPECT_EQ(drawn.tests(), expected.tests());
     ASSERT_EQ(drawn.boxes().size(), expected.boxes().size());
     ASSERT_EQ(drawn.lines().size(), expected.lines().size());

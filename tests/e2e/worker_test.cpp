@@ -80,7 +80,7 @@ TEST_F(Worker, WhatIsThrownIsAnError) {
 }
 
 TEST_F(Worker, AnExitIsAnError) {
-  expectFailure({"deed=exit"}, "error", {"frame 2", "by itself", "status 3"});
+  expectFailure({"deed=exit"}, "error", {"frame 2", "exited", "status 3"});
 }
 
 TEST_F(Worker, WhoClosesTheChannelIsAnError) {

@@ -22,8 +22,9 @@ using Json = nlohmann::ordered_json;
 constexpr NameTable kUnitNames{{NamedValue{ColumnUnit::none, ""},
                                 {ColumnUnit::seconds, "seconds"},
                                 {ColumnUnit::bytes, "bytes"}}};
-constexpr NameTable kKnownNames{
-    {NamedValue{Known::always, "always"}, {Known::timed, "timed"}, {Known::checked, "checked"}}};
+constexpr NameTable kKnownNames{{NamedValue{Availability::always, "always"},
+                                 {Availability::timed, "timed"},
+                                 {Availability::checked, "checked"}}};
 constexpr NameTable kFormNames{{NamedValue{JsonForm::value, "value"},
                                 {JsonForm::text, "text"},
                                 {JsonForm::joined, "joined"},
@@ -37,9 +38,9 @@ constexpr NameTable kFormRules{{NamedValue{JsonForm::value, "`{}`"},
                                 {JsonForm::count, "the number of `{}`"},
                                 {JsonForm::seconds, "mean of `{}`, in seconds"},
                                 {JsonForm::per_frame, "`{}` by the number of frames"}}};
-constexpr NameTable kKnownRules{{NamedValue{Known::always, ""},
-                                 {Known::timed, "; empty without a repetition"},
-                                 {Known::checked, "; empty unless `checked`"}}};
+constexpr NameTable kKnownRules{{NamedValue{Availability::always, ""},
+                                 {Availability::timed, "; empty without a repetition"},
+                                 {Availability::checked, "; empty unless `checked`"}}};
 
 /// A column for Python and the report page.
 Json toJson(const CaseColumn& column) {
@@ -109,7 +110,8 @@ TEST(CaseColumns, AreSaidOnce) {
     EXPECT_TRUE(keys.insert(column.key).second) << column.key;
     EXPECT_EQ(column.shown.csv, !column.json.path.empty()) << column.key;
   }
-  for (const auto order : {&ColumnShown::terminal, &ColumnShown::inspector, &ColumnShown::report}) {
+  for (const auto order :
+       {&ColumnDisplay::terminal, &ColumnDisplay::inspector, &ColumnDisplay::report}) {
     std::set<int> positions;
     for (const CaseColumn* column : caseColumns(order)) {
       EXPECT_TRUE(positions.insert(column->shown.*order).second) << column->key;

@@ -38,7 +38,7 @@ TEST(Cores, BusySharesComeFromTheTicksBetweenTwoReadings) {
 
 TEST(Cores, ASystemThatTellsNothingHasNoShares) {
   const MadeUpSystem system;
-  EXPECT_THAT(watchCores(std::chrono::hours(1), system.folders()), IsEmpty());
+  EXPECT_THAT(measureBusyShares(std::chrono::hours(1), system.folders()), IsEmpty());
   EXPECT_THAT(coreSiblings(system.folders()), IsEmpty());
 }
 

@@ -78,7 +78,7 @@ TEST_F(NoiseWarnings, BuildsWithoutOptimisation) {
 
 TEST(WatchMachine, ReadsWhatTheSystemTells) {
   const MadeUpSystem system;
-  const auto watch = [&] { return watchMachine(std::chrono::milliseconds(1), system.folders()); };
+  const auto watch = [&] { return sampleMachine(std::chrono::milliseconds(1), system.folders()); };
   EXPECT_EQ(watch().usable_cores, usableCores());
   EXPECT_FALSE(watch().turbo);
   system.write("sys/devices/system/cpu/cpufreq/boost", "1\n");

@@ -113,7 +113,7 @@ TEST(Posrot, IsReadByteForByte) {
   PosrotReader reader = posrotOf(handMadePosrot());
   EXPECT_EQ(reader.scene(), posrotScene(2, 2));
   EXPECT_THAT(reader.rewind().boxes, ElementsAreArray(handMadeBoxes()));
-  EXPECT_THAT(reader.unturnedBoxes(), ElementsAreArray(handMadeBoxes()));
+  EXPECT_THAT(reader.unrotatedBoxes(), ElementsAreArray(handMadeBoxes()));
   EXPECT_THAT(reader.halfExtents(), ElementsAreArray<Vec3>({{2, 0.5F, 1}, {0.5F, 0.5F, 0.5F}}));
 
   const auto first = reader.next();
@@ -327,7 +327,7 @@ TEST(BadPosrot, BrokenRecordsAreNamedWithTheirPlace) {
       {408, -kInfinity, "frame 1, body 1 (byte 400): the pose is infinite"},
       {428, kNan, "frame 1, body 1 (byte 400): the pose is not a number"},
       {428, kInfinity, "frame 1, body 1 (byte 400): the pose is infinite"},
-      {428, 0, "frame 1, body 1 (byte 400): the pose has a quaternion of length 0 (1 is right)"},
+      {428, 0, "frame 1, body 1 (byte 400): the pose has a quaternion of length 0 (expected: 1)"},
       {428, 1.01F, "frame 1, body 1 (byte 400): the pose has a quaternion of length 1.01"},
       {460, kMax, "frame 2, body 0 (byte 432): the pose has a quaternion of length"},
       {272, kNan, "byte 272: the world box is not a number"}};

@@ -182,8 +182,8 @@ TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
   const CollisionFilter filter = filters(kSlots)[1].filter;
   write(directory / "a.broadmark", changingSceneOf(frames, false, filter), frames);
   Recording2Reader whole(directory / "a.broadmark");
-  const Part part = partOf(whole.scene(), {1, 5, 30, 31, 59}, {2, 3, 7});
-  writePart(directory / "b.broadmark", whole, part);
+  const Selection part = selectionOf(whole.scene(), {1, 5, 30, 31, 59}, {2, 3, 7});
+  writeSelection(directory / "b.broadmark", whole, part);
   Recording2Reader reader(directory / "b.broadmark");
   EXPECT_EQ(reader.scene().filter, filter.of(part.bodies));
   Frames expected;
@@ -400,7 +400,8 @@ TEST(BadRecording2, HeadersOfOtherThings) {
 TEST(BadRecording2, AbsurdCountsTakeNoMemory) {
   Bytes bytes = smallRecording();
   put(bytes, 8, std::uint64_t{1} << 62);
-  EXPECT_THAT(faultOf(bytes), HasSubstr("byte 8: a header of 4611686018427387904 bytes"));
+  EXPECT_THAT(faultOf(bytes),
+              HasSubstr("byte 8: invalid header size of 4611686018427387904 bytes"));
   bytes = smallRecording();
   bytes = withHeader(bytes, "\"objects\": 3,\n", "\"objects\":42e8");
   EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: "));

@@ -223,8 +223,8 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
     const char* word;
   };
   const Fault faults[] = {
-      {"/environments/0/cpu", 5, "environments[0]: cpu", "text"},
-      {"/environments/0/caches", Json::array({1}), "environments[0]: caches", "texts"},
+      {"/environments/0/cpu", 5, "environments[0]: cpu", "string"},
+      {"/environments/0/caches", Json::array({1}), "environments[0]: caches", "strings"},
       {"/environments/0/memory_bytes", -1, "environments[0]: memory_bytes", "from 0 to"},
       {"/complete", 1, "complete", "true or false"},
       {"/cases/1/environment", 1, "case 'bare'", "no environment 1"},
@@ -241,7 +241,7 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
       {"/cases/0/checked", 1, "cases[0]: checked", "true or false"},
       {"/cases/0/pairs/mean", "1", "cases[0]: pairs: mean", "number"},
       {"/cases/0/params", 1, "cases[0]: params", "object"},
-      {"/cases/0/params/cells", 2, "cases[0]: params: cells", "text"},
+      {"/cases/0/params/cells", 2, "cases[0]: params: cells", "string"},
       {"/cases/0/recording/objects", -2, "cases[0]: recording: objects", "integer"},
       {"/cases/0/recording/source", 1, "cases[0]: recording: source", "object"},
       {"/cases/0/recording/world/min", Json::array({1, 2}), "cases[0]: recording: world: min",
@@ -383,7 +383,7 @@ TEST(ResultsJson, WhatIsNoResultsFile) {
       {"[1e999]", "not valid JSON"},
       {"[]", "a JSON object is expected"},
       {"{}", "not a results file"},
-      {R"({"schema": 1})", "schema: a text is expected"},
+      {R"({"schema": 1})", "schema: a string is expected"},
       {R"({"schema": "broadmark-scene/1"})", "not a results file"},
       {R"({"schema": "broadmark-results/2"})", "'options' is missing"}};
   for (const auto& [text, fault] : texts) {

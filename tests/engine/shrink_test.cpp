@@ -74,7 +74,8 @@ FrameDifference firstDifference(const Case& test_case, FrameSource& source) {
 }
 
 /// The difference of a new instance in the last frame of a part.
-FrameDifference lastDifference(const Case& test_case, IndexedFrames& source, const Part& part) {
+FrameDifference lastDifference(const Case& test_case, IndexedFrames& source,
+                               const Selection& part) {
   SubRecording frames(source, part, "Part");
   CaseResult result = runCase(test_case, frames);
   if (result.differences.empty()) return {};
@@ -88,8 +89,8 @@ std::vector<std::uint32_t> without(std::vector<std::uint32_t> items, std::size_t
 }
 
 /// A part without one of its bodies.
-Part withoutBody(const Part& part, std::size_t body) {
-  Part fewer = part;
+Selection withoutBody(const Selection& part, std::size_t body) {
+  Selection fewer = part;
   fewer.bodies = without(part.bodies, body);
   std::vector<std::uint32_t> indices(part.bodies.size());
   std::iota(indices.begin(), indices.end(), 0U);
@@ -98,8 +99,8 @@ Part withoutBody(const Part& part, std::size_t body) {
 }
 
 /// Variants of the part with a single absence filled, by the box before or after it.
-std::vector<Part> withAnAbsenceFilled(IndexedFrames& source, const Part& part) {
-  std::vector<Part> filled;
+std::vector<Selection> withAnAbsenceFilled(IndexedFrames& source, const Selection& part) {
+  std::vector<Selection> filled;
   SubRecording some(source, part, "Part");
   const FrameList frames(some);
   FrameList list = frames;
@@ -124,15 +125,15 @@ std::vector<Part> withAnAbsenceFilled(IndexedFrames& source, const Part& part) {
 }
 
 /// Variants of the part with a single simplification of its filter.
-std::vector<Part> withASimplerFilter(const Part& part) {
+std::vector<Selection> withASimplerFilter(const Selection& part) {
   std::vector<BodyGroups> groups;
   for (std::uint32_t body = 0; body < part.bodies.size(); ++body) {
     groups.push_back(part.filter.groupsOf(body));
   }
   const LayerMatrix matrix = part.filter.matrix();
-  std::vector<Part> simpler;
+  std::vector<Selection> simpler;
   const auto add = [&](const std::vector<BodyGroups>& changed, const LayerMatrix& other) {
-    Part variant = part;
+    Selection variant = part;
     variant.filter = CollisionFilter(changed, other);
     if (variant.filter != part.filter) simpler.push_back(variant);
   };
@@ -166,28 +167,28 @@ std::vector<Part> withASimplerFilter(const Part& part) {
 /// Expects that the part fails in its last frame, and that no smaller part does.
 void expectMinimal(const Case& test_case, IndexedFrames& source, const ShrunkCase& shrunk) {
   EXPECT_TRUE(shrunk.minimal);
-  const Part& part = shrunk.part;
+  const Selection& part = shrunk.part;
   EXPECT_TRUE(std::ranges::is_sorted(part.bodies));
   EXPECT_TRUE(std::ranges::is_sorted(part.frames));
   const FrameDifference difference = lastDifference(test_case, source, part);
   EXPECT_TRUE(difference.isMismatch());
   EXPECT_EQ(difference.missed_pairs, shrunk.difference.missed_pairs);
   EXPECT_EQ(difference.false_pairs, shrunk.difference.false_pairs);
-  const auto fails = [&](const Part& fewer) {
+  const auto fails = [&](const Selection& fewer) {
     return lastDifference(test_case, source, fewer).isMismatch();
   };
   for (std::size_t i = 0; i < part.bodies.size(); ++i) {
     EXPECT_FALSE(fails(withoutBody(part, i))) << "without body " << i;
   }
   for (std::size_t i = 0; i + 1 < part.frames.size() && part.frames.size() > 2; ++i) {
-    Part fewer = part;
+    Selection fewer = part;
     fewer.frames = without(part.frames, i);
     EXPECT_FALSE(fails(fewer)) << "without frame " << i;
   }
-  for (const Part& filled : withAnAbsenceFilled(source, part)) {
+  for (const Selection& filled : withAnAbsenceFilled(source, part)) {
     EXPECT_FALSE(fails(filled)) << "body " << filled.filled.back().body << " present";
   }
-  for (const Part& simpler : withASimplerFilter(part)) EXPECT_FALSE(fails(simpler));
+  for (const Selection& simpler : withASimplerFilter(part)) EXPECT_FALSE(fails(simpler));
 }
 
 class PlantedFault : public testing::TestWithParam<std::uint64_t> {
@@ -443,7 +444,7 @@ FrameList changingScene() {
   return changing(live, presences::random, filters(60).back().filter);
 }
 
-std::size_t absencesIn(IndexedFrames& source, const Part& part) {
+std::size_t absencesIn(IndexedFrames& source, const Selection& part) {
   SubRecording frames(source, part, "Part");
   std::size_t absent = 0;
   recordAll(frames, [&](const Frame& frame) {
@@ -561,8 +562,8 @@ TEST(ShrinkInChangingWorlds, IsFoundWithoutKnowingThePairAndWithLittleMemory) {
 TEST(Shrink, PartsAreWrittenAsRecordings) {
   const TemporaryDirectory directory;
   FrameList scene = wandering(30, 6, 1);
-  const Part part{{2, 3, 29}, {0, 4, 6}};
-  const std::string hash = writePart(directory / "part.aabbs", scene, part);
+  const Selection part{{2, 3, 29}, {0, 4, 6}};
+  const std::string hash = writeSelection(directory / "part.aabbs", scene, part);
   RecordingReader reader(directory / "part.aabbs");
   EXPECT_EQ(reader.hash(), hash);
   EXPECT_EQ(reader.scene().name, "Wandering case");

@@ -49,7 +49,7 @@ TEST(SubRecording, IsTheSelectedPart) {
   WanderingBoxes source(6, 8, 2);
   FrameList whole(source);
   FrameList check(source);
-  const Part selected{{1, 4, 5}, {2, 3, 7}};
+  const Selection selected{{1, 4, 5}, {2, 3, 7}};
   SubRecording part(whole, selected, "Part");
   EXPECT_EQ(part.scene().name, "Part");
   EXPECT_EQ(part.scene().object_type, source.scene().object_type);
@@ -71,7 +71,7 @@ TEST(SubRecording, IsTheSelectedPart) {
 TEST(SubRecording, OfEverythingIsTheWhole) {
   WanderingBoxes source(7, 4, 3);
   const auto recording = recorded(source);
-  SubRecording part(*recording, wholePart(recording->scene(), 4), recording->scene().name);
+  SubRecording part(*recording, selectAll(recording->scene(), 4), recording->scene().name);
   EXPECT_EQ(part.scene(), recording->scene());
   EXPECT_EQ(recorded(part)->hash(), recording->hash());
 }
@@ -82,7 +82,7 @@ TEST(SubRecording, FillsAbsencesAndKeepsTheFilterOfItsBodies) {
   FrameList whole = changing(
       live, [](std::uint32_t body, std::uint32_t frame) { return body != 2 || frame > 3; },
       CollisionFilter(groups, LayerMatrix().set(0, 4)));
-  Part some = partOf(whole.scene(), {1, 2, 3}, {0, 2, 4});
+  Selection some = selectionOf(whole.scene(), {1, 2, 3}, {0, 2, 4});
   EXPECT_FALSE(some.all_present);
   EXPECT_EQ(some.filter.groupsOf(1), groups[2]);
   EXPECT_EQ(some.filter.matrix(), whole.scene().filter.matrix());

@@ -72,7 +72,7 @@ TEST(TortureRound, FindsAndShrinksEachPlantedFault) {
     EXPECT_LE(finding->part.frames.size(), 3U);
     // The shrunk part fails in its last frame.
     SubRecording part(*finding->frames, finding->part, "part");
-    Trial trial(finding->test_case, options.make_host, options.cancelled);
+    Trial trial(finding->test_case, options.make_executor, options.cancelled);
     const auto fault = trial.run(part);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->kind, finding->fault.kind);

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const ScriptLine& line :
          parseScript({reinterpret_cast<const char*>(data), size}, "fuzz")) {
       if (line.number <= before || line.verb == nullptr) std::abort();
-      if (line.words.size() < line.verb->fewest || line.words.size() > line.verb->most) {
+      if (line.words.size() < line.verb->min_words || line.words.size() > line.verb->max_words) {
         std::abort();
       }
       before = line.number;

@@ -31,28 +31,28 @@ TEST(PackedPairsTest, TakesAboutHalfTheMemory) {
 TEST(SeenAnswersTest, AreToldApartByLaneAndFrame) {
   AnswerCache seen(1 << 20);
   CachedAnswer wrong = answerOf({{1, 2}});
-  wrong.judged = true;
+  wrong.checked = true;
   wrong.difference = FrameDifference{.missed_count = 1, .missed_pairs = {{3, 4}}};
-  wrong.right = {{1, 2}, {3, 4}};
+  wrong.oracle_pairs = {{1, 2}, {3, 4}};
   wrong.counters = {{"tests", 7}};
-  seen.remember(1, 10, wrong);
-  seen.remember(2, 10, answerOf({{5, 6}}));
-  const auto recalled = seen.recall(1, 10);
+  seen.insert(1, 10, wrong);
+  seen.insert(2, 10, answerOf({{5, 6}}));
+  const auto recalled = seen.find(1, 10);
   ASSERT_TRUE(recalled);
   EXPECT_EQ(recalled->pairs, wrong.pairs);
-  EXPECT_EQ(recalled->right, wrong.right);
+  EXPECT_EQ(recalled->oracle_pairs, wrong.oracle_pairs);
   EXPECT_EQ(recalled->difference->missed_pairs, wrong.difference->missed_pairs);
   EXPECT_EQ(recalled->counters, wrong.counters);
-  EXPECT_EQ(seen.recall(2, 10)->pairs, (std::vector<Pair>{{5, 6}}));
-  EXPECT_FALSE(seen.recall(1, 11));
-  EXPECT_TRUE(seen.holds(1, 10, true));
-  EXPECT_FALSE(seen.holds(2, 10, true));
-  EXPECT_TRUE(seen.holds(2, 10, false));
-  seen.forget(1);
-  EXPECT_FALSE(seen.recall(1, 10));
-  EXPECT_TRUE(seen.recall(2, 10));
+  EXPECT_EQ(seen.find(2, 10)->pairs, (std::vector<Pair>{{5, 6}}));
+  EXPECT_FALSE(seen.find(1, 11));
+  EXPECT_TRUE(seen.contains(1, 10, true));
+  EXPECT_FALSE(seen.contains(2, 10, true));
+  EXPECT_TRUE(seen.contains(2, 10, false));
+  seen.erase(1);
+  EXPECT_FALSE(seen.find(1, 10));
+  EXPECT_TRUE(seen.find(2, 10));
   seen.clear();
-  EXPECT_FALSE(seen.recall(2, 10));
+  EXPECT_FALSE(seen.find(2, 10));
   EXPECT_EQ(seen.bytes(), 0U);
 }
 
@@ -60,25 +60,25 @@ TEST(SeenAnswersTest, TheOldestGiveWayToTheBudget) {
   constexpr std::size_t kBudget = 100'000;
   AnswerCache seen(kBudget);
   for (std::uint32_t frame = 0; frame < 100; ++frame) {
-    seen.remember(1, frame, answerOf(manyPairs(1000)));
+    seen.insert(1, frame, answerOf(manyPairs(1000)));
     EXPECT_LE(seen.bytes(), kBudget);
-    EXPECT_TRUE(seen.recall(1, frame));
+    EXPECT_TRUE(seen.find(1, frame));
   }
-  EXPECT_FALSE(seen.recall(1, 0));
-  EXPECT_TRUE(seen.recall(1, 98));
+  EXPECT_FALSE(seen.find(1, 0));
+  EXPECT_TRUE(seen.find(1, 98));
   // Storing an answer again makes it the newest.
   std::uint32_t oldest = 0;
-  while (!seen.recall(1, oldest)) ++oldest;
+  while (!seen.find(1, oldest)) ++oldest;
   const std::size_t before = seen.bytes();
-  seen.remember(1, oldest, answerOf(manyPairs(1000)));
+  seen.insert(1, oldest, answerOf(manyPairs(1000)));
   EXPECT_EQ(seen.bytes(), before);
-  seen.remember(1, 100, answerOf(manyPairs(1000)));
-  EXPECT_TRUE(seen.recall(1, oldest));
-  EXPECT_FALSE(seen.recall(1, oldest + 1));
+  seen.insert(1, 100, answerOf(manyPairs(1000)));
+  EXPECT_TRUE(seen.find(1, oldest));
+  EXPECT_FALSE(seen.find(1, oldest + 1));
   // An answer larger than the cache is not stored, and evicts no other.
-  seen.remember(1, 500, answerOf(manyPairs(100'000)));
-  EXPECT_FALSE(seen.recall(1, 500));
-  EXPECT_TRUE(seen.recall(1, 100));
+  seen.insert(1, 500, answerOf(manyPairs(100'000)));
+  EXPECT_FALSE(seen.find(1, 500));
+  EXPECT_TRUE(seen.find(1, 100));
 }
 
 }  // namespace

@@ -33,13 +33,13 @@ TEST(AnswerText, AMissedPairIsToldFromBothSides) {
   Snapshot snapshot = threeBoxes();
   snapshot.track = 1;
   snapshot.checked = true;
-  snapshot.right_pairs = 1;
+  snapshot.oracle_pair_count = 1;
   snapshot.difference.missed_count = 1;
   const std::array<std::uint32_t, 2> both = {0, 1};
   const AnswerText text = answerText(snapshot, {trackOf(1)}, 1, both);
   EXPECT_EQ(text.verdict, AnswerText::Verdict::wrong);
   EXPECT_EQ(text.answer, "sap reports 0 pairs");
-  EXPECT_EQ(text.beside, "the oracle finds 1: 1 missed");
+  EXPECT_EQ(text.comparison, "the oracle finds 1: 1 missed");
   EXPECT_EQ(text.pair, "0-1: sap does not report it, the oracle finds it");
 }
 
@@ -49,11 +49,11 @@ TEST(AnswerText, WhatIsRightOrNotComparedSaysSo) {
   snapshot.pairs = {{0, 1}};
   EXPECT_EQ(answerText(snapshot, {trackOf(1)}, 1, {}).verdict, AnswerText::Verdict::unchecked);
   snapshot.checked = true;
-  snapshot.right_pairs = 1;
+  snapshot.oracle_pair_count = 1;
   const AnswerText text = answerText(snapshot, {trackOf(1)}, 1, {});
   EXPECT_EQ(text.verdict, AnswerText::Verdict::right);
   EXPECT_EQ(text.answer, "sap reports 1 pair");
-  EXPECT_EQ(text.beside, "the oracle finds the same");
+  EXPECT_EQ(text.comparison, "the oracle finds the same");
   EXPECT_EQ(text.pair, "");
 }
 
@@ -63,8 +63,8 @@ TEST(AnswerText, WithoutAnAlgorithmsAnswerItIsTheOracles) {
   const AnswerText text = answerText(snapshot, {trackOf(1)}, 1, {});
   EXPECT_EQ(text.verdict, AnswerText::Verdict::oracle);
   EXPECT_EQ(text.answer, "the oracle finds 1 pair");
-  EXPECT_EQ(text.beside, "sap has no answer for frame 4");
-  EXPECT_EQ(answerText(snapshot, {trackOf(1)}, 0, {}).beside, "no algorithm's answer is shown");
+  EXPECT_EQ(text.comparison, "sap has no answer for frame 4");
+  EXPECT_EQ(answerText(snapshot, {trackOf(1)}, 0, {}).comparison, "no algorithm's answer is shown");
   const std::array<std::uint32_t, 2> apart = {1, 2};
   EXPECT_EQ(answerText(snapshot, {}, 0, apart).pair, "1-2: the oracle does not find it");
 }

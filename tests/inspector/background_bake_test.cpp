@@ -32,8 +32,8 @@ class BackgroundBakeTest : public testing::Test {
 
   BackgroundBake::Report wait() {
     bake.wait();
-    EXPECT_TRUE(bake.takeEnd());
-    EXPECT_FALSE(bake.takeEnd());
+    EXPECT_TRUE(bake.consumeFinished());
+    EXPECT_FALSE(bake.consumeFinished());
     return bake.report();
   }
 

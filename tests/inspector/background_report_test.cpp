@@ -23,8 +23,8 @@ TEST(RunProgram, KeepsWhatIsPrintedAndTheStatus) {
 }
 
 TEST(RunProgram, SaysThatThereIsNone) {
-  EXPECT_TRUE(isProgramThere("sh"));
-  EXPECT_FALSE(isProgramThere("no-such-program"));
+  EXPECT_TRUE(isProgramInPath("sh"));
+  EXPECT_FALSE(isProgramInPath("no-such-program"));
   try {
     runProgram({"no-such-program"});
     FAIL();
@@ -62,7 +62,7 @@ TEST(BackgroundReport, SaysWhatIsWrong) {
   EXPECT_THROW(startReport(report, "results.json", directory / "none/page.html"), InputError);
   startReport(report, directory / "none.json", directory / "page.html");
   report.wait();
-  EXPECT_TRUE(report.takeEnd());
+  EXPECT_TRUE(report.consumeFinished());
   EXPECT_EQ(report.report().state, TaskState::failed);
   EXPECT_THAT(report.report().failure, HasSubstr("no report page"));
   EXPECT_FALSE(fs::exists(directory / "page.html"));
@@ -84,7 +84,7 @@ TEST(BackgroundReport, RunsNothingFromTheCurrentFolder) {
 
 TEST(OpenByDesktop, RefusesWhileAScriptIsPlayed) {
   const WriteSandbox sandbox(fs::current_path());
-  EXPECT_THROW(openByDesktop("page.html"), InputError);
+  EXPECT_THROW(openWithDesktop("page.html"), InputError);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class CaseExportTest : public testing::Test {
     setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "60"}});
     session.draft.simulate();
     setParameters(*session.tracks.add(algorithm).parameters, {{"fat_margin", "0.5"}});
-    session.tracks.changed();
+    session.tracks.applyEdits();
     session.mismatches.goToNext(waitUntilIdle());
     const RunProgress seen = waitUntilIdle();
     EXPECT_TRUE(seen.stop) << "the fault did not show";
@@ -57,23 +57,23 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     waitUntilIdle();
     EXPECT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
     ASSERT_EQ(report.state, State::done) << report.failure;
-    EXPECT_EQ(report.whole_bodies, 200U);
-    EXPECT_EQ(report.whole_frames, seen.snapshot->frame);
-    EXPECT_EQ(report.now.bodies, algorithm == "faulty" ? 3U : 2U);
-    EXPECT_LE(report.now.frames, 2U);
-    EXPECT_GT(report.now.trials, 0U);
+    EXPECT_EQ(report.original_bodies, 200U);
+    EXPECT_EQ(report.original_frames, seen.snapshot->frame);
+    EXPECT_EQ(report.progress.bodies, algorithm == "faulty" ? 3U : 2U);
+    EXPECT_LE(report.progress.frames, 2U);
+    EXPECT_GT(report.progress.trials, 0U);
     EXPECT_THAT(report.command, testing::HasSubstr("--algorithm " + algorithm + " "));
     EXPECT_THAT(report.command, testing::HasSubstr("--param fat_margin=0.5"));
     EXPECT_THAT(session.notices.status.text, testing::HasSubstr("exported"));
     const auto written = openRecordingFile(directory / (algorithm + ".aabbs"));
-    EXPECT_EQ(written->scene().objects, report.now.bodies);
-    EXPECT_EQ(written->scene().frames, report.now.frames);
+    EXPECT_EQ(written->scene().objects, report.progress.bodies);
+    EXPECT_EQ(written->scene().frames, report.progress.frames);
 
     session.openExport(session.jobs.get<CaseExport>().report());
     const RunProgress opened = waitUntilIdle();
-    EXPECT_EQ(opened.scene.objects, report.now.bodies);
+    EXPECT_EQ(opened.scene.objects, report.progress.bodies);
     ASSERT_TRUE(opened.snapshot);
-    EXPECT_EQ(opened.snapshot->frame, report.now.frames);
+    EXPECT_EQ(opened.snapshot->frame, report.progress.frames);
     EXPECT_TRUE(opened.snapshot->difference.isMismatch());
     EXPECT_TRUE(session.notices.errors.empty());
   }
@@ -126,8 +126,8 @@ TEST_F(CaseExportTest, CanBeCancelled) {
     EXPECT_EQ(steps, last);
     EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
   }
-  EXPECT_TRUE(work.takeEnd());
-  EXPECT_FALSE(work.takeEnd());
+  EXPECT_TRUE(work.consumeFinished());
+  EXPECT_FALSE(work.consumeFinished());
 }
 
 TEST_F(CaseExportTest, EndsWithItsOwner) {
@@ -213,7 +213,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   ASSERT_EQ(session.results->rows().size(), 2U);
   EXPECT_EQ(session.results->rows()[0].mismatches, 0U);
   EXPECT_EQ(session.results->rows()[1].mismatches, 1U);
-  EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Cases"));
+  EXPECT_THAT(session.notices.panels_to_raise, testing::Contains("Cases"));
 
   session.openCase(directory / "r.json", "some/case");
   const RunProgress opened = waitUntilIdle();
@@ -221,7 +221,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   ASSERT_EQ(session.tracks.list.size(), 1U);
   EXPECT_EQ(opened.snapshot->frame, wrong);
   EXPECT_TRUE(opened.snapshot->difference.isMismatch());
-  EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Mismatches"));
+  EXPECT_THAT(session.notices.panels_to_raise, testing::Contains("Mismatches"));
 
   session.openCase(directory / "r.json", "other/case");
   ASSERT_EQ(session.notices.errors.size(), 1U);

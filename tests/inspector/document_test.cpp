@@ -41,7 +41,7 @@ TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
   for (const Algorithm& algorithm : builtinAlgorithms()) {
     if (algorithm.family != "GPU") session.tracks.add(algorithm.id);
   }
-  session.document.start({});
+  session.document.load({});
   const RunProgress seen = waitUntilIdle();
   ASSERT_TRUE(seen.snapshot);
   EXPECT_TRUE(seen.snapshot->boxes->empty());
@@ -51,7 +51,7 @@ TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
 }
 
 TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   const RunProgress first = waitUntilIdle();
   ASSERT_EQ(first.snapshot->boxes->size(), 3U);
   const std::uint64_t scene = first.source->scene;
@@ -71,7 +71,7 @@ TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
 }
 
 TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   waitUntilIdle();
   session.selection.select({2, 0, 7});
   EXPECT_THAT(session.document.editor.selection(), testing::ElementsAre(0, 2));
@@ -93,26 +93,26 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
 }
 
 TEST_F(AuthoringTest, GroupsOfTheDocumentAreSelectedAsOne) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   waitUntilIdle();
   session.selection.select({0, 2});
   session.document.edit(&SceneEditor::group);
-  EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(0, 2));
-  EXPECT_THAT(session.selection.whole({1}), testing::ElementsAre(1));
+  EXPECT_THAT(session.selection.withGroups({2}), testing::ElementsAre(0, 2));
+  EXPECT_THAT(session.selection.withGroups({1}), testing::ElementsAre(1));
   session.draft.simulate();
   waitUntilIdle();
-  EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(2)) << "of another scene";
+  EXPECT_THAT(session.selection.withGroups({2}), testing::ElementsAre(2)) << "of another scene";
 }
 
 TEST_F(AuthoringTest, AnotherWorldIsAnotherSceneToLookAt) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   const std::uint64_t before = waitUntilIdle().source->scene;
   session.document.edit([](SceneEditor& e) { e.setWorld({{-99, -99, -99, 0}, {99, 99, 99, 0}}); });
   EXPECT_NE(waitUntilIdle().source->scene, before);
 }
 
 TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   waitUntilIdle();
   session.document.edit([](SceneEditor& editor) { editor.setName("a/b"); });
   EXPECT_EQ(session.notices.errors.size(), 1U);
@@ -120,7 +120,7 @@ TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
 }
 
 TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   session.document.edit([](SceneEditor& editor) {
     editor.selectAll();
     editor.transform("turn", {.centre = editor.selectionCentre(), .turn = {0, 0.6F, 0, 0.8F}});
@@ -129,7 +129,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
   EXPECT_TRUE(session.document.save(directory / "three"));  // the document appends the extension
   EXPECT_EQ(session.document.path(), directory / "three.json");
   EXPECT_FALSE(session.document.isModified());
-  session.document.start({});
+  session.document.load({});
   session.open(directory / "three.json");
   waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
@@ -140,7 +140,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
 }
 
 TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   waitUntilIdle();
   writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
   session.open(directory / "bad.json");
@@ -154,20 +154,20 @@ TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
 }
 
 TEST_F(AuthoringTest, UnsavedChangesWaitForADecision) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   int left = 0;
-  session.document.leave([&] { ++left; });
+  session.document.closeThen([&] { ++left; });
   EXPECT_EQ(left, 1);
   session.document.edit([](SceneEditor& editor) { editor.setName("Other"); });
-  session.document.leave([&] { ++left; });
+  session.document.closeThen([&] { ++left; });
   EXPECT_EQ(left, 1);
-  ASSERT_TRUE(session.document.leaving);
-  session.document.leaving();
+  ASSERT_TRUE(session.document.pending_close);
+  session.document.pending_close();
   EXPECT_EQ(left, 2);
 }
 
 TEST_F(AuthoringTest, PlayingSimulatesAndAnEditReturnsToTheStart) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   waitUntilIdle();
   session.play(true);
   EXPECT_TRUE(session.document.shown());
@@ -188,7 +188,7 @@ TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
   session.draft.simulate();
   session.playback.seek(9);
   const RunProgress live = waitUntilIdle();
-  session.document.startFromFrame();
+  session.document.loadCurrentFrame();
   const RunProgress seen = waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.atRest());
@@ -211,7 +211,7 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
   waitUntilIdle();
   session.playback.seek(4);
   const RunProgress recorded = waitUntilIdle();
-  session.document.startFromFrame();
+  session.document.loadCurrentFrame();
   const RunProgress seen = waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(seen.snapshot->boxes->size(), recorded.snapshot->boxes->size());
@@ -219,7 +219,7 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
 }
 
 TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
-  session.document.start({});
+  session.document.load({});
   Document& document = session.document;
   for (std::size_t brush = 0; brush < document.brushes.size(); ++brush) {
     document.chooseBrush(brush);
@@ -233,7 +233,7 @@ TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
 }
 
 TEST_F(AuthoringTest, BakesTheWholeScene) {
-  session.document.start(threeBodies());
+  session.document.load(threeBodies());
   session.document.bake(directory / "three");
   session.jobs.get<BackgroundBake>().wait();
   waitUntilIdle();

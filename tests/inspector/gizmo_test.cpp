@@ -25,7 +25,7 @@ class GizmoTest : public testing::Test {
   [[nodiscard]] ViewProjection sight() const { return {ViewSpace{}, viewpoint}; }
 
   [[nodiscard]] Pixel gripOf(Tool tool, Handle handle) const {
-    for (const HandleShape& shape : handleShapes(tool, place, sight())) {
+    for (const HandleShape& shape : handleShapes(tool, pose, sight())) {
       if (shape.handle == handle) return sight().pixelOf(shape.grip).value();
     }
     ADD_FAILURE() << "no such handle";
@@ -36,18 +36,18 @@ class GizmoTest : public testing::Test {
   [[nodiscard]] GizmoDrag::Outcome drag(Tool tool, Handle handle, Pixel by,
                                         bool snaps = false) const {
     const Pixel from = gripOf(tool, handle);
-    return GizmoDrag(tool, handle, place, sight(), from)
+    return GizmoDrag(tool, handle, pose, sight(), from)
         .at({from[0] + by[0], from[1] + by[1]}, tools, snaps);
   }
 
   Viewpoint viewpoint;
-  GizmoPlace place;
+  GizmoPose pose;
   Tools tools;
 };
 
 TEST_F(GizmoTest, EachHandleIsHitAtItsGripAndNoneFarAway) {
   for (const Tool tool : {Tool::move, Tool::turn, Tool::scale}) {
-    const auto shapes = handleShapes(tool, place, sight());
+    const auto shapes = handleShapes(tool, pose, sight());
     EXPECT_EQ(shapes.size(), tool == Tool::move ? 6U : tool == Tool::turn ? 3U : 4U);
     for (const HandleShape& shape : shapes) {
       const Pixel grip = sight().pixelOf(shape.grip).value();
@@ -60,7 +60,7 @@ TEST_F(GizmoTest, EachHandleIsHitAtItsGripAndNoneFarAway) {
 
 TEST_F(GizmoTest, AnAxisSeenFromItsEndCannotBeDragged) {
   viewpoint.camera.eye = {0, 0, 10};
-  for (const HandleShape& shape : handleShapes(Tool::move, place, sight())) {
+  for (const HandleShape& shape : handleShapes(Tool::move, pose, sight())) {
     EXPECT_NE(shape.handle, Handle::z);
     EXPECT_NE(shape.handle, Handle::yz);
     EXPECT_NE(shape.handle, Handle::zx);
@@ -93,7 +93,7 @@ TEST_F(GizmoTest, APlaneKeepsWhatIsAcrossIt) {
 
 TEST_F(GizmoTest, ItsOwnAxesAreThoseOfATurnedBody) {
   const float half = std::numbers::sqrt2_v<float> / 2;
-  place.turn = {0, half, 0, half};  // x to -z, z to x
+  pose.rotation = {0, half, 0, half};  // x to -z, z to x
   const auto outcome = drag(Tool::move, Handle::z, {40, 10});
   EXPECT_NE(outcome.change.move[0], 0);
   EXPECT_NEAR(outcome.change.move[1], 0, 1e-5);

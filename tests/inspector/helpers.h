@@ -35,7 +35,7 @@ inline constexpr std::chrono::hours kForever{24};
 inline RunProgress waitUntilIdle(Session& session) {
   RunProgress seen;
   for (int picture = 0; picture < 4; ++picture) {
-    session.commit();
+    session.postRequest();
     EXPECT_TRUE(session.runs.waitUntilIdle(kForever));
     session.runs.readProgress([&](const RunProgress& progress) {
       session.advance(progress, 0);

@@ -147,7 +147,7 @@ TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
   waitUntilIdle();
   const std::string wrong = value("stop_frame");
   ASSERT_NE(wrong, "") << "the fault did not show";
-  inspector.session().notices.bringUp("Timeline");
+  inspector.session().notices.raisePanel("Timeline");
   draw(3);
   const WidgetPlace plot = *inspector.ui().find("Timeline/plot");
   int arrived = 0;
@@ -192,7 +192,7 @@ TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
   width = 800;
   height = 500;
   Session& session = inspector.session();
-  session.document.start({});
+  session.document.load({});
   session.document.add([&] { return session.document.stroke(); });
   session.document.tools.tool = Tool::brush;
   colourBy("correctness");  // its four legend rows do not fit
@@ -283,7 +283,7 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
 TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
   inspector.session().open(vanishingBodies(directory, 40));
   waitUntilIdle();
-  inspector.session().notices.bringUp("Bodies");
+  inspector.session().notices.raisePanel("Bodies");
   inspector.session().selection.select({37});
   waitUntilIdle();
   EXPECT_EQ(value("selected_body"), "present");
@@ -320,7 +320,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   waitUntilIdle();
   std::set<std::string> pressed;
   for (const auto& panel : inspector.panels()) {
-    inspector.session().notices.bringUp(panel.name);
+    inspector.session().notices.raisePanel(panel.name);
     waitUntilIdle();
     for (int round = 0; round < 60; ++round) {
       std::string next;
@@ -337,7 +337,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
       key(GLFW_KEY_ESCAPE);
       waitUntilIdle();
       inspector.session().notices.errors.clear();
-      inspector.session().notices.bringUp(panel.name);
+      inspector.session().notices.raisePanel(panel.name);
       waitUntilIdle();
     }
   }

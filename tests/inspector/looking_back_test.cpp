@@ -45,8 +45,8 @@ TEST_F(LookingBackTest, NoAlgorithmRunsForAFrameThatWasSeen) {
     ASSERT_EQ(seen.snapshot->frame, frame);
     EXPECT_EQ(seen.snapshot->track, session.tracks.shown());
     EXPECT_TRUE(seen.snapshot->checked);
-    EXPECT_EQ(seen.snapshot->right_pairs, seen.snapshot->pairs.size());
-    EXPECT_EQ(seen.snapshot->right_overlaps, seen.snapshot->overlaps);
+    EXPECT_EQ(seen.snapshot->oracle_pair_count, seen.snapshot->pairs.size());
+    EXPECT_EQ(seen.snapshot->oracle_overlaps, seen.snapshot->overlaps);
     EXPECT_THAT(seen.snapshot->pairs,
                 testing::UnorderedElementsAreArray(bruteForcePairs(*seen.snapshot->boxes)));
   }
@@ -70,8 +70,8 @@ TEST_F(LookingBackTest, AMismatchAndTheCountersComeAtOnce) {
   const RunProgress again = seek(wrong.snapshot->frame);
   EXPECT_EQ(again.tracks[0].frame, wrong.snapshot->frame);
   EXPECT_EQ(again.snapshot->difference.missed_pairs, wrong.snapshot->difference.missed_pairs);
-  EXPECT_EQ(again.snapshot->right_pairs, wrong.snapshot->right_pairs);
-  EXPECT_EQ(again.snapshot->right_overlaps, wrong.snapshot->right_overlaps);
+  EXPECT_EQ(again.snapshot->oracle_pair_count, wrong.snapshot->oracle_pair_count);
+  EXPECT_EQ(again.snapshot->oracle_overlaps, wrong.snapshot->oracle_overlaps);
   session.tracks.clear();
   const RunProgress first = simulate("tracy", 9);
   seek(4);
@@ -110,7 +110,7 @@ TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
   watched.playback.goTo(90);
   waitUntilIdle(watched);
   ASSERT_TRUE(first);
-  EXPECT_EQ(first->doing, "running bf again up to frame 90");
+  EXPECT_EQ(first->activity, "running bf again up to frame 90");
   EXPECT_EQ(first->snapshot->frame, 90U);
   EXPECT_FALSE(first->snapshot->pairs.empty());
   EXPECT_EQ(first->tracks[0].frame, 0U);
@@ -123,7 +123,7 @@ TEST_F(LookingBackTest, WhoPlaysOnHasEveryStateRight) {
   EXPECT_EQ(seek(20).tracks[0].frame, 40U);
   session.play(true);
   for (int picture = 0; picture < 2000 && session.playback.frame() < 60; ++picture) {
-    session.commit();
+    session.postRequest();
     session.runs.waitUntilIdle(kForever);
     session.runs.readProgress([&](const RunProgress& progress) { session.advance(progress, 1); });
   }
@@ -158,16 +158,16 @@ TEST_F(LookingBackTest, AnotherAlgorithmsAnswerIsItsOwn) {
   EXPECT_EQ(seen.snapshot->track, dbvt);
   EXPECT_EQ(seen.tracks[1].frame, 10U) << "its answer was not kept";
   EXPECT_GT(seen.snapshot->difference.allowed_extra_count, 0U);
-  EXPECT_LT(seen.snapshot->right_pairs, seen.snapshot->pairs.size());
+  EXPECT_LT(seen.snapshot->oracle_pair_count, seen.snapshot->pairs.size());
   session.tracks.show(0);
-  EXPECT_EQ(seek(10).snapshot->pairs.size(), seen.snapshot->right_pairs);
+  EXPECT_EQ(seek(10).snapshot->pairs.size(), seen.snapshot->oracle_pair_count);
 }
 
 TEST_F(LookingBackTest, EditedParametersHaveSeenNothing) {
   simulate("grid-bf", 20);
   seek(10);
   setParameters(*session.tracks.list.front().parameters, {{"objects_per_cell", "3"}});
-  session.tracks.changed();
+  session.tracks.applyEdits();
   EXPECT_EQ(seek(10).tracks[0].frame, 10U);
 }
 

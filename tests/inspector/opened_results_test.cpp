@@ -51,7 +51,7 @@ TEST(OpenedResults, AreFiltered) {
   wrong.differences.resize(2);
   for (FrameDifference& difference : wrong.differences) difference.frame = 1;
   OpenedResults results = opened({caseOf("sap", 1000, {{30}}), wrong, caseOf("kd", 1000, {{20}})});
-  EXPECT_EQ(results.wrong(), 1U);
+  EXPECT_EQ(results.wrongCount(), 1U);
   EXPECT_EQ(results.rows()[1].mismatches, 1U);
   results.filter("kd", false);
   EXPECT_THAT(listed(results), ElementsAre("kd 200", "kd 1000"));
@@ -166,7 +166,8 @@ TEST(OpenedResults, SayWhyACaseCannotBeOpened) {
   foreign.plugin = "libmine.so";
   const OpenedResults results =
       opened({gone, foreign, caseOf("nobody", 200, {{10}}), caseOf("kd", 200, {{10}})});
-  EXPECT_THAT(results.rows()[0].obstacle, HasSubstr("no/such.aabbs: no such recording"));
+  EXPECT_THAT(results.rows()[0].obstacle,
+              HasSubstr("no/such.aabbs: the recording no longer exists"));
   EXPECT_THAT(results.rows()[1].obstacle, HasSubstr("--plugin libmine.so"));
   EXPECT_THAT(results.rows()[2].obstacle, HasSubstr("nobody"));
   EXPECT_EQ(results.rows()[3].obstacle, "");

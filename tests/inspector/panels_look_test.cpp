@@ -97,7 +97,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
 
   /// Gives every panel contents. Draws nothing, because drawing would advance the playback.
   void prepare() {
-    session.document.start({});
+    session.document.load({});
     for (const float x : {0.0F, 3.0F}) {
       session.document.paint_at = {x, 1, 0};
       session.document.add([this] { return session.document.stroke(); });
@@ -113,27 +113,27 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     TrackEdit& parallel = session.tracks.add("bf-simd-mt");
     parallel.test_case.isa = Isa::scalar;
     parallel.test_case.threads = 2;
-    session.tracks.changed();
+    session.tracks.applyEdits();
     session.playback.goTo(40);
     waitUntilIdle(session);
     session.startDuel(20);
-    session.commit();
+    session.postRequest();
     session.jobs.get<BackgroundDuel>().wait();
 
     setParameters(*session.tracks.add("faulty").parameters, {{"fat_margin", "0.5"}});
-    session.tracks.changed();
+    session.tracks.applyEdits();
     waitUntilIdle(session);
     session.showSecond(true);
     session.timeline.select(5, 30);
     session.results.emplace("results.json", threeCases(), session.tracks.algorithms());
     waitUntilIdle(session);
-    session.notices.wanted_panels.clear();
+    session.notices.panels_to_raise.clear();
   }
 
   Picture pictureOf(const PanelTab& panel) {
     const auto [width, height] = std::get<Size>(GetParam());
     const Framebuffer target(gl, width, height, 1);
-    inspector.session().notices.bringUp(panel.name);
+    inspector.session().notices.raisePanel(panel.name);
     // The first frames raise the tab and compute the widths of its tables.
     for (int i = 0; i < 4; ++i) {
       inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });

@@ -110,7 +110,7 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
   EXPECT_EQ(seen.second->track, sap);
   EXPECT_TRUE(seen.second->checked);
   EXPECT_FALSE(seen.second->difference.isMismatch());
-  EXPECT_EQ(seen.second->right_pairs, rightPairs(*seen.second).size());
+  EXPECT_EQ(seen.second->oracle_pair_count, rightPairs(*seen.second).size());
   EXPECT_EQ(seen.snapshot->frame, 12U);
   EXPECT_NE(*seen.second->boxes, *seen.snapshot->boxes);
   // The tracks have not been rerun.
@@ -134,7 +134,7 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
 TEST_F(SecondViewTest, AnotherRecording) {
   const std::filesystem::path other = vanishingBodies(directory, 40);
   session.tracks.show(sap);  // sap supports vanishing bodies
-  session.showBeside(other);
+  session.openInSecondView(other);
   RunProgress seen = waitUntilIdle(session);
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(seen.second);
@@ -154,13 +154,13 @@ TEST_F(SecondViewTest, AnotherRecording) {
 }
 
 TEST_F(SecondViewTest, WhatCannotBeOpenedSaysWhy) {
-  session.showBeside("none.aabbs");
+  session.openInSecondView("none.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_FALSE(session.second);
 
   // The file is removed before it is opened.
   const std::filesystem::path other = vanishingBodies(directory, 40);
-  session.showBeside(other);
+  session.openInSecondView(other);
   std::filesystem::remove(other);
   const RunProgress seen = waitUntilIdle(session);
   EXPECT_EQ(seen.second, nullptr);

@@ -26,7 +26,7 @@ class SessionTest : public testing::Test {
   /// Draws up to `most` frames, until the playback ends.
   void playOn(int most = 2000) {
     for (int picture = 0; picture < most && session.playback.playing(); ++picture) {
-      session.commit();
+      session.postRequest();
       session.runs.waitUntilIdle(kForever);
       session.runs.readProgress([&](const RunProgress& progress) { session.advance(progress, 1); });
     }
@@ -42,11 +42,11 @@ TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
   ASSERT_TRUE(seen.snapshot);
   EXPECT_EQ(seen.snapshot->frame, 0U);
   EXPECT_EQ(seen.snapshot->boxes->size(), 60U);
-  EXPECT_EQ(seen.known_frames, 0U);
+  EXPECT_EQ(seen.available_frames, 0U);
   session.playback.seek(7);
   seen = waitUntilIdle();
   EXPECT_EQ(seen.snapshot->frame, 7U);
-  EXPECT_EQ(seen.known_frames, 7U);
+  EXPECT_EQ(seen.available_frames, 7U);
   EXPECT_THAT(seen.snapshot->pairs,
               testing::UnorderedElementsAreArray(bruteForcePairs(*seen.snapshot->boxes)));
 }
@@ -96,7 +96,7 @@ TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
   ASSERT_TRUE(seen.snapshot->checked);
   EXPECT_GT(seen.snapshot->difference.missed_count, 0U);
   EXPECT_EQ(seen.tracks[1].frame, seen.stop->frame);
-  EXPECT_EQ(session.notices.wanted_panels, std::vector<std::string>{"Mismatches"});
+  EXPECT_EQ(session.notices.panels_to_raise, std::vector<std::string>{"Mismatches"});
   session.playback.step(1);
   const RunProgress later = waitUntilIdle();
   EXPECT_GT(session.playback.frame(), seen.stop->frame);
@@ -202,7 +202,7 @@ TEST_F(SessionTest, TwoThatShareOneStateAreRightSideBySide) {
     setParameters(*session.tracks.add("dbvt-d").parameters, {{"margin", margin}});
   }
   session.tracks.add("dbvt-f");
-  session.tracks.changed();
+  session.tracks.applyEdits();
   session.playback.seek(40);
   const RunProgress seen = waitUntilIdle();
   ASSERT_EQ(seen.tracks.size(), 3U);
@@ -223,7 +223,7 @@ TEST_F(SessionTest, ALaneThatCannotRunTellsWhyAndLeavesTheOthersAlone) {
   session.playback.seek(3);
   const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.tracks[0].status, Status::unsupported);
-  EXPECT_TRUE(seen.tracks[0].ended);
+  EXPECT_TRUE(seen.tracks[0].finished);
   EXPECT_THAT(seen.tracks[0].reason, testing::HasSubstr("10"));
   EXPECT_EQ(seen.tracks[1].frame, 3U);
 }
@@ -235,7 +235,7 @@ TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
   waitUntilIdle();
   TrackEdit& track = session.tracks.list.front();
   setParameters(*track.parameters, {{"objects_per_cell", "3"}});
-  session.tracks.changed();
+  session.tracks.applyEdits();
   const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.tracks[0].spec.test_case.parameters.at("objects_per_cell"), "3");
   EXPECT_EQ(seen.tracks[0].frame, 3U);
@@ -307,7 +307,7 @@ TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
     if (i % 17 == 0) session.tracks.add(i % 2 == 0 ? "bf" : "kd");
     if (i % 23 == 0 && !session.tracks.list.empty())
       session.tracks.remove(session.tracks.list.front().number);
-    session.commit();
+    session.postRequest();
     session.runs.readProgress(
         [&](const RunProgress& progress) { session.advance(progress, 0.01); });
   }

@@ -8,9 +8,9 @@ namespace {
 
 class TimelineTest : public testing::Test {
  protected:
-  TimelineTest() { timeline.follow(source, 1000, 0); }
+  TimelineTest() { timeline.update(source, 1000, 0); }
 
-  void playTo(std::uint32_t frame) { timeline.follow(source, 1000, frame); }
+  void playTo(std::uint32_t frame) { timeline.update(source, 1000, frame); }
   [[nodiscard]] bool isInSight(double frame) const {
     return frame >= timeline.first() && frame <= timeline.last();
   }
@@ -30,9 +30,9 @@ TEST_F(TimelineTest, ZoomsAboutAFrameAndStaysWithinTheRecording) {
   EXPECT_TRUE(timeline.zoomed());
   const double share = (250 - timeline.first()) / (timeline.last() - timeline.first());
   EXPECT_NEAR(share, 0.25, 1e-9);
-  timeline.move(1e6);
+  timeline.scroll(1e6);
   EXPECT_EQ(timeline.last(), 1000);
-  timeline.move(-1e6);
+  timeline.scroll(-1e6);
   EXPECT_EQ(timeline.first(), 0);
   timeline.zoom(1000, 0);
   EXPECT_GE(timeline.last() - timeline.first(), 1);
@@ -49,7 +49,7 @@ TEST_F(TimelineTest, FollowsThePlayhead) {
     EXPECT_NEAR(timeline.last() - timeline.first(), extent, 1e-9);
   }
   // A section chosen by the user stays until the playhead moves.
-  timeline.move(-500);
+  timeline.scroll(-500);
   playTo(999);
   EXPECT_FALSE(isInSight(999));
   playTo(1000);
@@ -73,11 +73,11 @@ TEST_F(TimelineTest, SpansLieWithinTheTimedFrames) {
 TEST_F(TimelineTest, ZoomAndSpanBelongToTheFootage) {
   timeline.zoom(10, 500);
   timeline.select(400, 600);
-  timeline.follow(std::make_shared<FrameProviderRequest>(), 60, 0);
+  timeline.update(std::make_shared<FrameProviderRequest>(), 60, 0);
   EXPECT_FALSE(timeline.zoomed());
   EXPECT_EQ(timeline.last(), 60);
   EXPECT_FALSE(timeline.span());
-  timeline.follow(source, 1000, 7);
+  timeline.update(source, 1000, 7);
   EXPECT_FALSE(timeline.zoomed());
   EXPECT_EQ(timeline.last(), 1000);
 }

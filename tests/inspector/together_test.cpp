@@ -72,7 +72,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   for (const char* margin : {"0.01", "0.7"}) {
     setParameters(*session.tracks.add("dbvt-d").parameters, {{"margin", margin}});
   }
-  session.tracks.changed();
+  session.tracks.applyEdits();
   session.mismatches.stop_at_mismatch = false;
   session.playback.seek(10);
   const RunProgress seen = waitUntilIdle(session);
@@ -97,7 +97,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   }
   const CaseExport::Report exported = session.jobs.get<CaseExport>().report();
   EXPECT_EQ(exported.state, TaskState::done) << exported.failure;
-  EXPECT_EQ(exported.now.bodies, 2U);
+  EXPECT_EQ(exported.progress.bodies, 2U);
   ASSERT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done)
       << session.jobs.get<BackgroundBake>().report().failure;
   EXPECT_EQ(openRecordingFile(directory / "together.aabbs")->hash(),

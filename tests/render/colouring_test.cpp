@@ -90,9 +90,9 @@ TEST(Colouring, TestsAreShownInStepsOfEqualRatio) {
   const std::vector<Aabb> boxes = someBoxes(tests.size());
   ColouringInput input;
   input.boxes = boxes;
-  EXPECT_THAT(coloured("tests", input).legend.front().label, "not told");
+  EXPECT_THAT(coloured("tests", input).legend.front().label, "not reported");
   input.tests = std::span(tests).first(3);
-  EXPECT_THAT(coloured("tests", input).legend.front().label, "not told");
+  EXPECT_THAT(coloured("tests", input).legend.front().label, "not reported");
   input.tests = tests;
   EXPECT_THAT(
       labels(coloured("tests", input)),
@@ -114,7 +114,7 @@ TEST(Colouring, MissedPairsAreShownBeforeFalseOnes) {
   input.missed = missed;
   input.false_pairs = false_pairs;
   EXPECT_THAT(labels(coloured("correctness", input)),
-              ElementsAre("missed", "missed", "missed", "false", "right", "free"));
+              ElementsAre("missed", "missed", "missed", "false", "correct", "free"));
 }
 
 TEST(Colouring, WhatOnlyOneOfTwoAnswersHas) {
@@ -308,15 +308,15 @@ TEST(PairLines, GoFromMiddleToMiddle) {
   const std::vector<std::uint32_t> selection = {1, 99};
   EXPECT_EQ(pairLines(boxes, {&list, 1}, style, selection).lines.size(), 2U);
   EXPECT_EQ(pairLines(boxes, {&list, 1}, style, std::span<const std::uint32_t>()).lines.size(), 0U);
-  style.most = 1;
+  style.max_lines = 1;
   const Overlay few = pairLines(boxes, {&list, 1}, style);
   EXPECT_EQ(few.lines.size(), 1U);
-  EXPECT_EQ(few.left_out, 2U);
+  EXPECT_EQ(few.dropped, 2U);
 }
 
 TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   RecordedDrawing drawing;
-  EXPECT_EQ(deepestLevel(drawing), 0);
+  EXPECT_EQ(maxLevel(drawing), 0);
   using enum StructureRole;
   drawing.box(boxOf(0, 100), cell, 0);
   drawing.box(boxOf(0, 10), cell_part, 1);
@@ -324,9 +324,9 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   drawing.box(boxOf(50, 5), resting_node, 2);
   drawing.line({0, 0, 0}, {5, 5, 5}, split);
   drawing.line({90, 90, 90}, {50, 50, 50}, best_split);
-  EXPECT_EQ(deepestLevel(drawing), 2);
+  EXPECT_EQ(maxLevel(drawing), 2);
 
-  const auto shown = [&](const StructureLook& filter) {
+  const auto shown = [&](const StructureStyle& filter) {
     std::vector<Rgb> colours;
     const Overlay overlay = structureOverlay(drawing, filter);
     for (const SceneWireBox& box : overlay.boxes) colours.push_back(box.colour);
@@ -336,15 +336,15 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   const Palette& c = kLightPalette;
   EXPECT_THAT(shown({}), ElementsAre(c.cell, c.cell_part, c.moving_node, c.resting_node, c.split,
                                      c.best_split));
-  StructureLook filter;
+  StructureStyle filter;
   filter.first_level = filter.last_level = 1;
   EXPECT_THAT(shown(filter), ElementsAre(c.cell_part, c.moving_node, c.split, c.best_split));
   filter.near = boxOf(52, 1);
   EXPECT_THAT(shown(filter), ElementsAre(c.moving_node, c.best_split));
   filter = {};
-  filter.most = 1;
+  filter.max_items = 1;
   EXPECT_THAT(shown(filter), ElementsAre(c.cell, c.split));
-  EXPECT_EQ(structureOverlay(drawing, filter).left_out, 4U);
+  EXPECT_EQ(structureOverlay(drawing, filter).dropped, 4U);
 }
 
 /// A drawing with a cell of each of these populations.
@@ -379,8 +379,9 @@ TEST(StructureOverlay, ColoursCellsByPopulationTheFullestLast) {
   EXPECT_EQ(overlay.boxes[1].colour, overlay.legend[0].swatch);
   EXPECT_EQ(overlay.boxes[5].colour, overlay.legend[5].swatch);
   EXPECT_EQ(overlay.boxes[5].box, boxOf(2, 1));
-  const Overlay few = structureOverlay(drawing, {.near = {}, .most = 2, .by_population = true});
-  EXPECT_EQ(few.left_out, 4U);
+  const Overlay few =
+      structureOverlay(drawing, {.near = {}, .max_items = 2, .by_population = true});
+  EXPECT_EQ(few.dropped, 4U);
   EXPECT_EQ(few.boxes[1].box, boxOf(2, 1));
   EXPECT_EQ(few.boxes[0].box, boxOf(4, 1));
   EXPECT_FALSE(hasPopulations(RecordedDrawing()));

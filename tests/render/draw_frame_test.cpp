@@ -211,7 +211,7 @@ TEST_P(EachSource, SizesAreObeyedOrRefused) {
     EXPECT_EQ(picture.rgba.size(), std::size_t{4} * static_cast<std::size_t>(width * height));
   }
   for (const auto& [width, height] :
-       {std::pair{0, 10}, {10, 0}, {-1, 10}, {kLargestPicture + 1, 10}}) {
+       {std::pair{0, 10}, {10, 0}, {-1, 10}, {kMaxPictureSide + 1, 10}}) {
     EXPECT_THROW(drawFrame(context(), scene, {1, boxes}, {}, width, height), RenderError);
   }
 }

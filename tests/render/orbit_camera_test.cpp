@@ -44,7 +44,7 @@ TEST(OrbitCamera, LooksAtThePivotFromTheDistance) {
 
 TEST(OrbitCamera, DirectionsShowTheAxesTheyPromise) {
   const auto axes = [](Direction direction) {
-    return axesOf(toCamera(lookedFrom({}, direction), kWideAspect, kUnit));
+    return axesOf(toCamera(viewedFrom({}, direction), kWideAspect, kUnit));
   };
   EXPECT_NEAR(axes(Direction::front).right[0], 1, 1e-5F);
   EXPECT_NEAR(axes(Direction::front).back[2], 1, 1e-5F);
@@ -115,7 +115,7 @@ TEST(OrbitCamera, FocusShowsAllOfTheBoxAndFillsThePicture) {
   for (const double aspect : {0.3, 1.0, 16.0 / 9, 4.0}) {
     for (const auto& [direction, name] : kDirections.entries) {
       for (const Aabb& box : {kUnit, Aabb{{0.2F, 0.1F, -0.3F}, {0.21F, 0.12F, -0.2999F}}}) {
-        const OrbitCamera orbit = focusedOn(lookedFrom(tilted(), direction), box, aspect);
+        const OrbitCamera orbit = focusedOn(viewedFrom(tilted(), direction), box, aspect);
         const Camera camera = toCamera(orbit, aspect, kUnit);
         float widest = 0;
         for (unsigned i = 0; i < 8; ++i) {
@@ -140,8 +140,8 @@ TEST(OrbitCamera, FocusOnAPointKeepsItsNeighbourhood) {
 }
 
 TEST(OrbitCamera, TheWayBetweenViewsBeginsAndEndsWithThem) {
-  const OrbitCamera from = lookedFrom({}, Direction::figure);
-  const OrbitCamera to = focusedOn(lookedFrom({}, Direction::left),
+  const OrbitCamera from = viewedFrom({}, Direction::figure);
+  const OrbitCamera to = focusedOn(viewedFrom({}, Direction::left),
                                    {{0.4F, 0.4F, 0.4F}, {0.401F, 0.401F, 0.401F}}, kWideAspect);
   EXPECT_EQ(between(from, to, 0), from);
   EXPECT_EQ(between(from, to, 1), to);
@@ -150,7 +150,7 @@ TEST(OrbitCamera, TheWayBetweenViewsBeginsAndEndsWithThem) {
 }
 
 TEST(OrbitCamera, TheAimStaysInThePictureOnTheWay) {
-  const OrbitCamera from = focusedOn(lookedFrom({}, Direction::figure), kUnit, kWideAspect);
+  const OrbitCamera from = focusedOn(viewedFrom({}, Direction::figure), kUnit, kWideAspect);
   const OrbitCamera to =
       focusedOn(from, {{0.4F, 0.4F, 0.4F}, {0.401F, 0.401F, 0.401F}}, kWideAspect);
   for (float t = 0; t <= 1; t += 0.05F) {

@@ -23,7 +23,7 @@ const Aabb kFarWorld = cube({1000, 0, 0}, 100);
 Viewpoint viewpointFrom(Direction direction) {
   const ViewSpace space = viewSpaceOf(kFarWorld);
   const double aspect = static_cast<double>(kScreenWidth) / kScreenHeight;
-  const OrbitCamera orbit = focusedOn(lookedFrom({}, direction), space.toView(kFarWorld), aspect);
+  const OrbitCamera orbit = focusedOn(viewedFrom({}, direction), space.toView(kFarWorld), aspect);
   return {toCamera(orbit, aspect, space.toView(kFarWorld)), kScreenWidth, kScreenHeight, 0};
 }
 

@@ -63,7 +63,7 @@ SceneViewContent contentOf(const Bodies& bodies) {
 }
 
 OrbitCamera wholeWorld(Direction direction = Direction::figure) {
-  return focusedOn(lookedFrom({}, direction), viewSpaceOf(kWorld).toView(kWorld), kAspect);
+  return focusedOn(viewedFrom({}, direction), viewSpaceOf(kWorld).toView(kWorld), kAspect);
 }
 
 std::array<int, 3> colourAt(const Picture& picture, const Viewpoint& viewpoint,
@@ -352,8 +352,8 @@ TEST_P(SceneViewTest, LinesAroundTheEyeAreDrawnAlike) {
 TEST_P(SceneViewTest, TechniqueFollowsTheDriver) {
   if (GetParam() != Technique::gl) GTEST_SKIP() << "once is enough";
   EXPECT_TRUE(isSoftwareRenderer(gl()));
-  EXPECT_TRUE(makeView(Technique::automatic)->isSplatting());
-  EXPECT_FALSE(makeView(Technique::gl)->isSplatting());
+  EXPECT_TRUE(makeView(Technique::automatic)->usesSoftwareRenderer());
+  EXPECT_FALSE(makeView(Technique::gl)->usesSoftwareRenderer());
 }
 
 TEST(AxisTips, PointAlongTheAxes) {

@@ -133,7 +133,7 @@ TEST_F(Replays, ViewerAcceptsBoxesWithoutPoses) {
   bake(*viewer, {out_ / path.filename()});
   EXPECT_EQ(bytesOf(out_ / path.filename()), bytesOf(path));
   EXPECT_THAT(inputErrorOf([&] { bake(*viewer, {out_ / "a.posrot"}); }),
-              AllOf(HasSubstr(path.string()), HasSubstr("boxes only")));
+              AllOf(HasSubstr(path.string()), HasSubstr("only boxes")));
 }
 
 TEST_F(Replays, TheInputMayBeAFile) {
@@ -324,7 +324,7 @@ TEST_F(Replays, RefusalsListTheRecordingsThatExist) {
   EXPECT_THAT(refusal("splitter", {{"objects", "512"}, {"input", aabbs.string()}}),
               AllOf(HasSubstr(aabbs.string()), HasSubstr("reads .posrot")));
   EXPECT_THAT(refusal("viewer", {{"objects", "63"}, {"input", aabbs.string()}}),
-              AllOf(HasSubstr("holds Brownian Cubes N64 F5"), HasSubstr("N63")));
+              AllOf(HasSubstr("contains Brownian Cubes N64 F5"), HasSubstr("N63")));
   EXPECT_THAT(inputErrorOf([&] {
                 (void)replay("viewer", {{"seed", "3"}});
               }),
@@ -339,7 +339,7 @@ TEST_F(Replays, ABrokenOrRenamedInputIsRefused) {
   EXPECT_THAT(inputErrorOf([&] {
                 (void)replay("viewer", {{"objects", "72"}})->scene();
               }),
-              AllOf(HasSubstr("N72 F5frames.posrot"), HasSubstr("holds Brownian Cubes N64")));
+              AllOf(HasSubstr("N72 F5frames.posrot"), HasSubstr("contains Brownian Cubes N64")));
   fs::resize_file(path, 1000);
   EXPECT_THAT(inputErrorOf([&] {
                 (void)replay("viewer", {{"objects", "64"}})->scene();

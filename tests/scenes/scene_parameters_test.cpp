@@ -88,7 +88,7 @@ TEST(SceneParameters, RefusalsNameFileKeyAndWhatWouldBeRight) {
       {with("engine", "bulet"), {"engine", "'bullet'"}},
       {with("engine", 3), {"engine", "'3'", "bullet"}},
       {with("strength", 4), {"strength"}},
-      {fileOf("freefall", {{"engine", "viewer"}, {"input", 4}}).dump(), {"input", "'4'", "text"}},
+      {fileOf("freefall", {{"engine", "viewer"}, {"input", 4}}).dump(), {"input", "'4'", "string"}},
       {fileOf("freefall", {{"engine", "viewer"}, {"density", 1}}).dump(), {"'density'"}},
       {fileOf("freefal", Json::object()).dump(), {"freefal", "'freefall'"}},
       {fileOf("freefall", 3).dump(), {"parameters", "object"}},

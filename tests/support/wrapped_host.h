@@ -13,7 +13,7 @@ namespace broadmark::tests {
 
 class WrappedHost : public CaseExecutor {
  public:
-  explicit WrappedHost(const Case& test_case) : inner_(makeLocalHost(test_case, {})) {}
+  explicit WrappedHost(const Case& test_case) : inner_(makeInProcessExecutor(test_case, {})) {}
 
   std::int64_t start(const SceneInfo& scene, const Frame& first) override {
     return inner_->start(scene, first);
