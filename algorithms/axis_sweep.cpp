@@ -75,7 +75,7 @@ class Sweep final : public bt32BitAxisSweep3 {
     for (int axis = 0; axis < 3; ++axis) placeEdges(boxes, axis);
   }
 
-  /// Updates one body.
+  /// Updates a body.
   void move(std::uint32_t body, const Aabb& box) {
     Handle& handle = *getHandle(body + 1);
     for (int axis = 0; axis < 3; ++axis) {

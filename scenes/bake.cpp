@@ -58,7 +58,7 @@ Sidecar sidecarOf(const fs::path& recording) {
   return is_sidecar ? json : Sidecar::object();
 }
 
-/// Writes one recording in the format of the path's extension: poses or boxes. Leaves no file
+/// Writes a recording in the format of the path's extension: poses or boxes. Leaves no file
 /// unless finished.
 class Recorder {
  public:

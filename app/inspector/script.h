@@ -58,7 +58,7 @@ class ScriptPlayer {
   /// Called once per picture until it returns true.
   using Step = std::function<bool(Inspector&, InputQueue&)>;
 
-  // Verbs. Each one enqueues its steps.
+  // Verbs, which enqueue their steps.
   void enter(const Words& words, Inspector& inspector);
   void type(const Words& words, Inspector& inspector);
   void key(const Words& words, Inspector& inspector);

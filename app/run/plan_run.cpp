@@ -163,7 +163,7 @@ class PlanRun {
     return true;
   }
 
-  /// Runs one repetition of a case unless it is skipped. Returns false when cancelled.
+  /// Runs a repetition of a case unless it is skipped. Returns false when cancelled.
   bool runOnce(PlannedCase& planned, IndexedFrames& recording, Oracle& oracle, std::uint64_t steps,
                bool measured) {
     CaseResult& result = planned.result;

@@ -79,7 +79,7 @@ Results documentFrom(const JsonFields& file) {
   return results;
 }
 
-/// Parses one line after the first.
+/// Parses a line after the first.
 void readLine(Results& results, const JsonFields& line) {
   if (results.complete) throw InputError(line.name() + ": after the line that ends the results");
   if (line.has("environment")) {

@@ -16,7 +16,7 @@
 
 namespace broadmark {
 
-/// Receives one counter: its name ("swaps", "moves", "skipped subtrees") and value.
+/// Receives a counter: its name ("swaps", "moves", "skipped subtrees") and value.
 using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
 
 /// Time spent on copies to and from a compute device in a frame, in nanoseconds.

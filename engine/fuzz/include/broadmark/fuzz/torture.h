@@ -99,7 +99,7 @@ struct TortureRound {
   std::optional<TortureFinding> finding;  ///< the fault that ended the round
 };
 
-/// Runs one round. Does not count unsupported cases (a device, a number of bodies). Throws
+/// Runs a round. Does not count unsupported cases (a device, a number of bodies). Throws
 /// Cancelled, without any effect.
 TortureRound runTortureRound(const TortureOptions&, std::uint64_t number);
 

@@ -39,7 +39,7 @@ struct RunPolicy {
   }
 };
 
-/// Executes one case in any number of passes, each with a fresh instance in the same executor.
+/// Executes a case in any number of passes, each with a fresh instance in the same executor.
 ///
 /// An algorithm's exception becomes the status, and ends the pass; only InputError and Cancelled
 /// reach the caller. The end of the executor's process is a status, too: the next start() has a new

@@ -31,7 +31,7 @@ struct RunHooks {
   std::function<void(std::uint32_t frame)> progress;
 };
 
-/// Runs one pass over `source` and adds to `result`: times, pairs, differences, status. Throws
+/// Runs a pass over `source` and adds to `result`: times, pairs, differences, status. Throws
 /// InputError (bad recording, no such device). Returns false when cancelled, without adding the
 /// repetition. `measured` = false: a warm-up, checked but not timed.
 bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, Oracle&,

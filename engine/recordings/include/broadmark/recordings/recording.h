@@ -139,7 +139,7 @@ class RecordingWriter {
   explicit RecordingWriter(const SceneInfo& scene);
   ~RecordingWriter();
 
-  /// Appends one set of boxes; the first is the initial pose. Throws InputError if a box is not
+  /// Appends a set of boxes; the first is the initial pose. Throws InputError if a box is not
   /// finite or inverted (a simulation that blew up), except for absent bodies, or if the disk is
   /// full.
   void write(std::span<const Aabb> boxes);
