@@ -199,7 +199,7 @@ class Torture {
     stopped_ = true;
   }
 
-  /// Runs a round after the other. An exception also stops the other threads.
+  /// Runs successive rounds. An exception also stops the other threads.
   void runRounds(Clock::time_point start, Progress& progress) {
     try {
       while (const std::optional<std::uint64_t> number = nextRound(start)) {
