@@ -25,7 +25,7 @@ TEST_F(FormerFiles, ACaseRunsAgainAndIsComparedWithItsFormerResult) {
   const std::string id = "Fountain/Cubes/N4/F3/columns/scalar/crowded=7";
   runQuietly({"--headless", "results.json", "--case", id, "--check", "full", "--json", "now.json"});
   const Json now = readJson(file("now.json")).at("cases").at(0);
-  EXPECT_EQ(now.at("parameters").at("split_threshold"), "7");
+  EXPECT_EQ(now.at("params").at("split_threshold"), "7");
   EXPECT_EQ(now.at("status"), "ok");
   const ProgramResult compared = run({"compare", "results.json", "now.json"});
   EXPECT_THAT(compared.out, AllOf(Not(HasSubstr("added")), HasSubstr("3 missing"))) << compared.err;
