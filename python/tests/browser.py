@@ -36,6 +36,7 @@ class Page:
         colours = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [colours]})
         self.driver.get(report.as_uri())
+        self.wait("return document.documentElement.dataset.ready")  # its scripts have run
 
     def section(self, name: str) -> Any:
         """Scrolls to a section, waits until it is drawn and returns it."""
