@@ -147,9 +147,8 @@ void addScenes(CLI::App& app, Options& options) {
   addList(app, "--scenes", "A[,B...]", append, {}, "built-in scenes (default: all)");
   app.add_option_function<std::vector<std::string>>(
          "--parameters", append,
-         "bake the scene described by this file: scene parameters, the .json beside a recording, "
-         "or "
-         "an authored scene (.json); other options override it (repeatable)")
+         "bake the scene described by this file: scene parameters, the .json beside a "
+         "recording, or an authored scene (.json); other options override it (repeatable)")
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
