@@ -301,7 +301,9 @@ std::optional<std::string> waitForChild(pid_t child, int out) {
 
 }  // namespace
 
-MeshTopology readWithAssimp(const fs::path& file, double frame_rate, const PointSink& sink) {
+MeshTopology readWithAssimp(const fs::path& file, double frame_rate, const PointSink& sink,
+                            ImportSummary& summary) {
+  summary.format = file.extension().string();
   openForReading(file);  // throws for a missing file
   const FileDescriptor out = unnamedFile();
   const pid_t child = ::fork();

@@ -60,11 +60,12 @@ std::string typeName(std::string elements) {
 
 class ElementFrames final : public IndexedFrames {
  public:
-  ElementFrames(const std::vector<fs::path>& files, const ReadingOptions& options) {
+  ElementFrames(const std::vector<fs::path>& files, const ReadingOptions& options,
+                ImportSummary& summary) {
     scene_.name = sequenceName(files);
     scene_.object_type = typeName(options.elements.value);
     scene_.world = kEmptyBox;
-    readFiles(files, options.frame_rate);
+    readFiles(files, options.frame_rate, summary);
     vertices_.resize(mesh_.vertices);
     std::iota(vertices_.begin(), vertices_.end(), 0U);
     if (hasExtension(files.front(), {".stl"})) joinVertices();
@@ -90,12 +91,13 @@ class ElementFrames final : public IndexedFrames {
   /// Indices of its vertices; repeated for edges and vertices.
   using Element = std::array<std::uint32_t, 3>;
 
-  void readFiles(const std::vector<fs::path>& files, double frame_rate) {
+  void readFiles(const std::vector<fs::path>& files, double frame_rate, ImportSummary& summary) {
     vertex_file_ = unnamedFile();
     for (const fs::path& file : files) {
       const PointSink sink = [&](auto points) { addFrame(points, file); };
-      MeshTopology mesh = hasExtension(file, {".obj"}) ? readObj(file, sink)
-                                                       : readWithAssimp(file, frame_rate, sink);
+      MeshTopology mesh = hasExtension(file, {".obj"})
+                              ? readObj(file, sink, summary)
+                              : readWithAssimp(file, frame_rate, sink, summary);
       if (&file == &files.front()) {
         mesh_ = std::move(mesh);
       } else {
@@ -192,8 +194,8 @@ class ElementFrames final : public IndexedFrames {
 }  // namespace
 
 std::unique_ptr<IndexedFrames> openElements(const std::vector<fs::path>& files,
-                                            const ReadingOptions& options) {
-  return std::make_unique<ElementFrames>(files, options);
+                                            const ReadingOptions& options, ImportSummary& summary) {
+  return std::make_unique<ElementFrames>(files, options, summary);
 }
 
 }  // namespace broadmark::imports

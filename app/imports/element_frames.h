@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadmark/frame.h"
+#include "imports/import_summary.h"
 #include "request/reading_options.h"
 
 namespace broadmark::imports {
@@ -15,6 +16,6 @@ namespace broadmark::imports {
 /// unless kept, with vertices as tags. All files must contain the same mesh, each with an animation
 /// or a single frame. Throws InputError.
 std::unique_ptr<IndexedFrames> openElements(const std::vector<std::filesystem::path>& files,
-                                            const ReadingOptions& options);
+                                            const ReadingOptions& options, ImportSummary&);
 
 }  // namespace broadmark::imports

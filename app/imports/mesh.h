@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "imports/import_summary.h"
+
 namespace broadmark::imports {
 
 using Point = std::array<float, 3>;
@@ -19,6 +21,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct MeshTopology {
   std::uint32_t vertices = 0;
   std::vector<Triangle> triangles;
+  std::vector<std::array<std::uint32_t, 2>> lines = {};  ///< edges of no face: rods, wires
 };
 
 /// Receives the vertices of each frame, in order.
@@ -29,11 +32,11 @@ using PointSink = std::function<void(std::span<const Point>)>;
 
 /// Reads a Wavefront OBJ file. Does not use assimp, which creates separate vertices for each corner
 /// of a face, so that no two faces would share one. Throws InputError.
-MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink);
+MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
 
 /// Reads a file with assimp, at `frame_rate` frames per second, in a child process, as damaged
 /// files may crash assimp or exhaust the memory. Throws InputError.
 MeshTopology readWithAssimp(const std::filesystem::path& file, double frame_rate,
-                            const PointSink& sink);
+                            const PointSink& sink, ImportSummary&);
 
 }  // namespace broadmark::imports

@@ -8,7 +8,8 @@
 
 namespace broadmark::imports {
 
-MeshTopology readWithAssimp(const std::filesystem::path& file, double, const PointSink&) {
+MeshTopology readWithAssimp(const std::filesystem::path& file, double, const PointSink&,
+                            ImportSummary&) {
   throw InputError(
       fmt::format("{}: {}: only .obj can be read", file.string(), leftOut(parts::kAssimp)));
 }

@@ -80,12 +80,14 @@ class ObjReader {
 
 }  // namespace
 
-MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink) {
+MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink,
+                     ImportSummary& summary) {
   ObjReader reader(file);
   reader.read();
   if (reader.points.empty()) {
     throw InputError(fmt::format("{}: no vertices: lines 'v x y z' are expected", file.string()));
   }
+  summary.format = "Wavefront OBJ";
   sink(reader.points);
   return std::move(reader.mesh);
 }

@@ -67,7 +67,8 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
 }
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
-                                    const ReadingOptions&) {
+                                    const ReadingOptions&, imports::ImportSummary& summary) {
+  summary.format = "CSV";
   return imports::openTextFrames(files, readFrame, "Boxes");
 }
 

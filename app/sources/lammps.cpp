@@ -126,7 +126,9 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
 }
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
-                                    const ReadingOptions& options) {
+                                    const ReadingOptions& options,
+                                    imports::ImportSummary& summary) {
+  summary.format = "LAMMPS dump";
   const auto format = [radius = options.radius](LineReader& lines, TextFrame& frame) {
     return readFrame(lines, frame, radius);
   };

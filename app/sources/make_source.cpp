@@ -131,7 +131,8 @@ Source recordingSource(const fs::path& path) {
 Source importedSource(const std::vector<std::string>& names, const FileImport& import,
                       ReadingOptions options) {
   Source source;
-  source.imported = import.open(imports::expandNames(names, import.extensions), options);
+  source.imported =
+      import.open(imports::expandNames(names, import.extensions), options, source.summary);
   source.reference.scene = source.imported->scene();
   source.reference.path = names.front();
   source.reference.reading = options.changed();

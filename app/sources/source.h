@@ -13,6 +13,7 @@
 #include "broadmark/harness/oracle.h"
 #include "broadmark/results/results.h"
 #include "broadmark/scenes/simulation.h"
+#include "imports/import_summary.h"
 #include "original/settings.h"
 #include "request/reading_options.h"
 #include "request/run_request.h"
@@ -24,6 +25,7 @@ struct Source {
   RecordingReference reference;                  ///< hash and path filled by openRecording()
   std::unique_ptr<Simulation> simulation;        ///< null for an existing recording
   std::unique_ptr<IndexedFrames> imported = {};  ///< frames of imported files; else null
+  imports::ImportSummary summary = {};           ///< of imported files
   std::string expected_hash = {};                ///< hash the recording must have; "": any
 };
 
@@ -88,7 +90,7 @@ struct FileImport {
   std::vector<std::string> options;     ///< names of the ReadingOptions it uses
   /// Throws InputError.
   std::unique_ptr<IndexedFrames> (*open)(const std::vector<std::filesystem::path>&,
-                                         const ReadingOptions&);
+                                         const ReadingOptions&, imports::ImportSummary&);
 };
 
 /// A kind of source: `broadmark::sources::NAME::kind()` for a NAME in the list in CMakeLists.txt.

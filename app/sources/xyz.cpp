@@ -58,7 +58,9 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
 }
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
-                                    const ReadingOptions& options) {
+                                    const ReadingOptions& options,
+                                    imports::ImportSummary& summary) {
+  summary.format = "XYZ";
   // Particles are identified by their index, so all frames must have the same number.
   const auto format = [radius = options.radius, particles = std::optional<std::size_t>()](
                           LineReader& lines, TextFrame& frame) mutable {

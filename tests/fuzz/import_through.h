@@ -30,7 +30,8 @@ inline bool isWithin(const Aabb& box, const Aabb& world) { return merged(box, wo
 /// Imports a file of this kind, all of its frames. Throws InputError.
 inline void readAllFrames(const SourceKind& kind, const std::filesystem::path& path,
                           const ReadingOptions& options) {
-  const auto frames = kind.import->open({path}, options);
+  imports::ImportSummary summary;
+  const auto frames = kind.import->open({path}, options, summary);
   const SceneInfo& scene = frames->scene();
   // Frames without bodies take no bytes: a short file may have any number of them.
   for (std::uint32_t index = 0; index <= std::min(scene.frames, 1000U); ++index) {
