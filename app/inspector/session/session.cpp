@@ -135,12 +135,13 @@ void Session::startDuel(double max_seconds) {
 void Session::showSecond(bool on) {
   second.reset();
   if (!on) return;
-  second.emplace();
+  SecondViewRequest request;
   const auto other = std::ranges::find_if(
       tracks.list, [this](const TrackEdit& track) { return track.number != tracks.shown(); });
-  if (other != tracks.list.end()) second->track = other->number;
+  if (other != tracks.list.end()) request.track = other->number;
   // Without another answer to show, freeze the current frame in the second view.
-  if (other == tracks.list.end() && tracks.shown() == 0) second->frame = playback.frame();
+  if (other == tracks.list.end() && tracks.shown() == 0) request.frame = playback.frame();
+  second = std::move(request);
 }
 
 void Session::openInSecondView(const fs::path& recording) {
