@@ -11,6 +11,7 @@
 #include <map>
 #include <thread>
 
+#include "broadmark/cores.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "original/ids.h"
@@ -121,7 +122,7 @@ void applyNamePart(Case& test_case, const std::string& part, const std::string& 
 
 }  // namespace
 
-int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+int allCores() { return availableCores(); }
 
 int parseThreadCount(const std::string& text) {
   constexpr long long kMaxThreads = 1024;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -26,6 +28,15 @@ std::vector<int> coresOfList(std::istream& list) {
     if (list.peek() == ',') list.ignore();
   }
   return cores;
+}
+
+/// The CPU quota of a control group in cores; infinite without one.
+double quotaOf(const std::filesystem::path& group) {
+  std::ifstream file(group / "cpu.max");
+  double quota = 0;  // microseconds in each period, or "max"
+  double period = 0;
+  return file >> quota >> period && period > 0 ? quota / period
+                                               : std::numeric_limits<double>::infinity();
 }
 
 /// Sort key of a core: first whether an SMT sibling is chosen, then other load on the core.
@@ -59,6 +70,20 @@ std::vector<int> usableCores() {
     if (CPU_ISSET(core, &set)) cores.push_back(core);
   }
   return cores;
+}
+
+int availableCores(const SystemFolders& folders) {
+  auto cores = static_cast<double>(usableCores().size());
+  std::ifstream groups(folders.proc / "self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (!line.starts_with("0::/")) continue;  // another version
+    std::filesystem::path group = line.substr(4);
+    for (; !group.empty(); group = group.parent_path()) {
+      cores = std::min(cores, quotaOf(folders.sys / "fs/cgroup" / group));
+    }
+    cores = std::min(cores, quotaOf(folders.sys / "fs/cgroup"));
+  }
+  return std::max(1, static_cast<int>(std::ceil(cores)));
 }
 
 std::map<int, CoreTicks> coreTicks(const SystemFolders& folders) {

@@ -54,6 +54,19 @@ TEST(Cores, SiblingsAreListsAndRanges) {
                           testing::Pair(2, ElementsAre(4))));
 }
 
+TEST(Cores, ThoseBeyondTheQuotaAreNotAvailable) {
+  const int usable = static_cast<int>(usableCores().size());
+  MadeUpSystem system;
+  EXPECT_EQ(availableCores(system.folders()), usable);
+  system.write("proc/self/cgroup", "0::/jobs/one\n");
+  system.write("sys/fs/cgroup/jobs/one/cpu.max", "max 100000\n");
+  EXPECT_EQ(availableCores(system.folders()), usable);
+  system.write("sys/fs/cgroup/jobs/cpu.max", "150000 100000\n");
+  EXPECT_EQ(availableCores(system.folders()), std::min(usable, 2));
+  system.write("sys/fs/cgroup/jobs/one/cpu.max", "10000 100000\n");
+  EXPECT_EQ(availableCores(system.folders()), 1);
+}
+
 TEST(Cores, TheQuietestAreChosen) {
   const std::vector<int> usable = {0, 1, 2, 3};
   EXPECT_THAT(quietestCores(2, usable, {}, {}), ElementsAre(0, 1));

@@ -10,6 +10,7 @@
 //   EIO       this call fails: the disc is broken
 //   ENOSPC    from this call on, all calls that need disc space fail: the disc is full
 //   EINTR     from this call on, a signal interrupts every other call before it does anything
+//   backwards the real-time clock goes back by an hour with every reading
 //   short     from this call on, all calls read or write only half of the requested bytes
 
 #include <dlfcn.h>
@@ -27,6 +28,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <string_view>
 
@@ -223,6 +225,14 @@ int rename(const char* from, const char* to) noexcept {
 int unlink(const char* path) noexcept {
   return whole(kUnlink, pathOf(path),
                [&] { return original<int (*)(const char*)>("unlink")(path); });
+}
+
+int clock_gettime(clockid_t clock, struct timespec* time) noexcept {
+  static const auto read = original<int (*)(clockid_t, struct timespec*)>("clock_gettime");
+  static std::atomic<long> readings = 0;
+  const int result = read(clock, time);
+  if (clock == CLOCK_REALTIME && options().fault == "backwards") time->tv_sec -= 3600 * ++readings;
+  return result;
 }
 
 int mkdir(const char* path, mode_t mode) noexcept {

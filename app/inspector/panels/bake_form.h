@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "bake/bake_plan.h"
+#include "broadmark/cores.h"
 #include "broadmark/error.h"
 #include "inspector/panels/batch_form.h"
 #include "inspector/session/text_lists.h"
@@ -25,7 +25,7 @@ class BakeForm : BatchForm {
     for (const RecorderListing& recorder : builtinRecorders()) recorders_.push_back(recorder.id);
     options_.sources = {scenes_.front()};
     options_.scene.object_types = {types_.front()};
-    options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+    options_.threads = std::max(1, availableCores() - 1);
   }
 
   void draw() {
