@@ -58,10 +58,12 @@ if(BROADMARK_APP AND NOT CMAKE_CROSSCOMPILING)
   broadmark_install_printed(${data}/fish/vendor_completions.d broadmark.fish completion fish)
 endif()
 
-# Documents and their example scenes, in folders that match their links.
+# Documents and the files that they link to, in folders that match the links.
 include(cmake/Copyright.cmake)
-file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
-install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md
+install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md LICENSE
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
-install(DIRECTORY assets/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY assets/scenes assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
+install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/python
+  PATTERN .ipynb_checkpoints EXCLUDE)
+install(FILES scripts/packages.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/scripts)

@@ -35,6 +35,7 @@ if(NOT flags MATCHES ", optimised.*: .*-O3")
 endif()
 
 if(PYTHON)
+  run("${PYTHON}" "${SOURCE_DIR}/check_links.py" "${WORK_DIR}/prefix/share/doc/broadmark")
   file(GLOB packages "${WORK_DIR}/prefix/lib/python3*/dist-packages")
   run(${CMAKE_COMMAND} -E env --unset=BROADMARK "PYTHONPATH=${packages}" "PYTHONDONTWRITEBYTECODE=1"
     "${PYTHON}" "${SOURCE_DIR}/use_python_package.py" "${WORK_DIR}/prefix")
