@@ -37,6 +37,11 @@ bool measure(const Trial& trial, int threads, int rounds) {
   const std::vector<std::vector<Aabb>> frames = {inputs::uniform(trial.bodies, 0, 1),
                                                  inputs::uniform(trial.bodies, 1, 1)};
   const ThreadGain gain = gainOfThreads(trial.id, threads, frames, rounds);
+  if (gain.rounds == 0) {
+    fmt::print("{:14} {:>8}  no round of {} with whole cores\n", trial.id, trial.bodies,
+               gain.all_rounds);
+    return true;
+  }
   fmt::print(
       "{:14} {:>8}  {:9.2f} ms  {} threads {:9.2f} ms  {:5.2f}x [{:.2f}, {:.2f}] in {:>2} of {:>3} "
       "rounds with whole cores",
