@@ -114,7 +114,13 @@ FileDescriptor::~FileDescriptor() {
 }
 
 FileDescriptor unnamedFile() {
-  const std::filesystem::path directory = std::filesystem::temp_directory_path();
+  std::error_code failed;
+  const std::filesystem::path directory = std::filesystem::temp_directory_path(failed);
+  if (failed) {
+    const char* stated = std::getenv("TMPDIR");
+    throw InputError(fmt::format("TMPDIR: {}: not a directory for temporary files: {}",
+                                 stated == nullptr ? "/tmp" : stated, failed.message()));
+  }
   std::string name = (directory / "broadmark-XXXXXX").string();
   FileDescriptor file(::mkstemp(name.data()));
   if (file.get() < 0) {
