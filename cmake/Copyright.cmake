@@ -9,7 +9,8 @@ program as a whole, and the library broadmark::algorithms, are also under the GP
 ")
 endif()
 
-set(packages libbullet-dev libcli11-dev libeigen3-dev libfmt-dev libxxhash-dev nlohmann-json3-dev)
+set(packages libbullet-dev libcli11-dev libeigen3-dev libfmt-dev libxxhash-dev nlohmann-json3-dev
+  zlib1g-dev)
 if(BROADMARK_CGAL)
   list(APPEND packages libcgal-dev)
 endif()

@@ -14,6 +14,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "imports/files.h"
 #include "imports/mesh.h"
+#include "imports/mesh_format.h"
 
 namespace broadmark::imports {
 namespace {
@@ -65,10 +66,10 @@ class ElementFrames final : public IndexedFrames {
     scene_.name = sequenceName(files);
     scene_.object_type = typeName(options.elements.value);
     scene_.world = kEmptyBox;
-    readFiles(files, options.frame_rate, summary);
+    readFiles(files, options, summary);
     vertices_.resize(mesh_.vertices);
     std::iota(vertices_.begin(), vertices_.end(), 0U);
-    if (hasExtension(files.front(), {".stl"})) joinVertices();
+    if (meshFormat(files.front(), options.format.value) == "stl") joinVertices();
     addElements(options.elements.value);
     if (elements_.empty()) {
       throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
@@ -91,13 +92,14 @@ class ElementFrames final : public IndexedFrames {
   /// Indices of its vertices; repeated for edges and vertices.
   using Element = std::array<std::uint32_t, 3>;
 
-  void readFiles(const std::vector<fs::path>& files, double frame_rate, ImportSummary& summary) {
+  void readFiles(const std::vector<fs::path>& files, const ReadingOptions& options,
+                 ImportSummary& summary) {
     vertex_file_ = unnamedFile();
     for (const fs::path& file : files) {
       const PointSink sink = [&](auto points) { addFrame(points, file); };
-      MeshTopology mesh = hasExtension(file, {".obj"})
+      MeshTopology mesh = meshFormat(file, options.format.value) == "obj"
                               ? readObj(file, sink, summary)
-                              : readWithAssimp(file, frame_rate, sink, summary);
+                              : readWithAssimp(file, options.frame_rate, sink, summary);
       if (&file == &files.front()) {
         mesh_ = std::move(mesh);
       } else {

@@ -2,15 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <locale.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "broadmark/error.h"
-#include "broadmark/files.h"
 #include "broadmark/json_fields.h"
+#include "imports/contents.h"
 #include "support/words.h"
 
 namespace broadmark::imports {
@@ -19,50 +24,79 @@ namespace {
 constexpr std::string_view kWhiteSpace = " \t\v\f";
 /// Longer lines indicate a binary file.
 constexpr std::size_t kMaxLineLength = 1 << 20;
+constexpr std::size_t kFirstBytes = 1 << 16;
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kWhiteSpace);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kWhiteSpace) + 1 - begin);
+/// Parses what from_chars() calls out of range, a correct number: 0 or denormal, or infinite.
+double hugeOrTiny(const std::string& text) {
+  static const locale_t kPlain = ::newlocale(LC_ALL_MASK, "C", nullptr);
+  return ::strtod_l(text.c_str(), nullptr, kPlain);
 }
 
-/// Quotes and truncates a word for a message.
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kMaxLength = 40;
-  const bool cut = text.size() > kMaxLength;
-  return fmt::format("'{}{}'", onOneLine(std::string(text.substr(0, kMaxLength))), cut ? "…" : "");
-}
-
-/// Parses a text that is a number and nothing else.
-template <class Number>
-bool parse(std::string_view text, Number& number) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && rest == end;
+/// Without a plus sign, which from_chars() does not accept.
+std::string_view withoutPlus(std::string_view text) {
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  return plus ? text.substr(1) : text;
 }
 
 }  // namespace
 
 LineReader::LineReader(const std::filesystem::path& path)
-    : path_(path.string()), buffer_(kMaxLineLength + 2, '\0') {
-  openForReading(path);  // throws unless it is a regular file
-  file_.open(path);
+    : path_(path.string()), file_(openContents(path)), buffer_(kFirstBytes, '\0') {
+  fill(0);
+  const std::string_view start = std::string_view(buffer_).substr(0, filled_);
+  if (start.starts_with("\xFF\xFE") || start.starts_with("\xFE\xFF")) {
+    throw InputError(fmt::format("{}: is UTF-16: save it as UTF-8", path_));
+  }
+  if (start.starts_with(kByteOrderMark)) begin_ = kByteOrderMark.size();
+  const bool has_lf = start.find('\n') != std::string_view::npos;
+  if (!has_lf && start.find('\r') != std::string_view::npos) line_end_ = '\r';
+}
+
+bool LineReader::fill(std::size_t begin) {
+  if (begin > 0) {
+    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin),
+              buffer_.begin() + static_cast<std::ptrdiff_t>(filled_), buffer_.begin());
+    filled_ -= begin;
+    buffer_begin_ += begin;
+  }
+  if (filled_ == buffer_.size()) buffer_.resize(2 * buffer_.size());
+  const std::span space = std::span(buffer_).subspan(filled_);
+  const std::size_t got =
+      readAll(file_.get(), std::as_writable_bytes(space), buffer_begin_ + filled_);
+  if (got < space.size() && errno != 0) {
+    throw InputError(fmt::format("{}: cannot read: {}", path_, std::strerror(errno)));
+  }
+  filled_ += got;
+  return got > 0;
 }
 
 bool LineReader::next() {
   if (std::exchange(unread_, false)) return true;
-  file_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  const auto length = static_cast<std::size_t>(file_.gcount());
-  if (file_.bad()) {
-    throw InputError(fmt::format("{}: cannot read: {}", path_, std::strerror(errno)));
-  }
-  if (length == 0) return false;
   begin_ += length_;
-  length_ = length;
+  length_ = 0;
+  std::size_t begin = begin_ - buffer_begin_;
+  std::size_t end = begin;
+  while (true) {
+    const void* found = std::memchr(buffer_.data() + end, line_end_, filled_ - end);
+    if (found != nullptr) {
+      end = static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data());
+      length_ = end + 1 - begin;
+      break;
+    }
+    if (filled_ - begin > kMaxLineLength) {
+      fail(number_ + 1, "is longer than a million characters: not a text file?");
+    }
+    end = filled_ - begin;  // all up to here has been searched
+    const bool more = fill(begin);
+    begin = 0;
+    if (!more) {
+      length_ = end;
+      break;
+    }
+  }
+  if (length_ == 0) return false;
   ++number_;
-  if (file_.fail()) fail("is longer than a million characters: not a text file?");
-  line_ = std::string_view(buffer_).substr(0, file_.eof() ? length : length - 1);
+  line_ = std::string_view(buffer_).substr(begin, end - begin);
   while (line_.ends_with('\r')) line_.remove_suffix(1);
   return true;
 }
@@ -78,12 +112,13 @@ LineReader::Position LineReader::position() const {
 }
 
 void LineReader::seek(Position position) {
-  file_.clear();
-  file_.seekg(static_cast<std::streamoff>(position.offset));
   begin_ = position.offset;
   length_ = 0;
   number_ = position.lines_before;
   unread_ = false;
+  if (begin_ >= buffer_begin_ && begin_ <= buffer_begin_ + filled_) return;
+  buffer_begin_ = begin_;
+  filled_ = 0;
 }
 
 void LineReader::fail(std::uint64_t line, std::string_view what) const {
@@ -92,7 +127,7 @@ void LineReader::fail(std::uint64_t line, std::string_view what) const {
 
 double LineReader::realNumber(std::string_view text, std::string_view what) const {
   double number = 0;
-  if (!parse(text, number) || !std::isfinite(number)) {
+  if (!parseReal(text, number) || !std::isfinite(number)) {
     fail(fmt::format("{} is {}: a finite number is expected", what, quoted(text)));
   }
   return number;
@@ -100,10 +135,45 @@ double LineReader::realNumber(std::string_view text, std::string_view what) cons
 
 std::int64_t LineReader::integer(std::string_view text, std::string_view what) const {
   std::int64_t number = 0;
-  if (!parse(text, number)) {
+  if (!parseInteger(text, number)) {
     fail(fmt::format("{} is {}: an integer is expected", what, quoted(text)));
   }
   return number;
+}
+
+bool parseReal(std::string_view text, double& number) {
+  text = withoutPlus(text);
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error == std::errc::result_out_of_range) number = hugeOrTiny(std::string(text));
+  return error != std::errc::invalid_argument && rest == end;
+}
+
+bool parseInteger(std::string_view text, std::int64_t& number) {
+  text = withoutPlus(text);
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kWhiteSpace);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kWhiteSpace) + 1 - begin);
+}
+
+std::string lowered(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kMaxLength = 40;
+  const bool cut = text.size() > kMaxLength;
+  return fmt::format("'{}{}'", onOneLine(std::string(text.substr(0, kMaxLength))), cut ? "…" : "");
 }
 
 bool isBlank(std::string_view line) { return trimmed(line).empty(); }

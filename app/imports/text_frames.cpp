@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/simulation.h"
@@ -15,26 +17,26 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-// The nearest float that is not above, or not below, a number.
-float floatBelow(double value) {
-  const auto near = static_cast<float>(value);
-  return near > value ? std::nextafter(near, -kMaxFloat) : near;
-}
-float floatAbove(double value) {
-  const auto near = static_cast<float>(value);
-  return near < value ? std::nextafter(near, kMaxFloat) : near;
-}
-
-Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius) {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::abs(centre[axis]) + radius > kMaxFloat) {
-      reader.fail(fmt::format("{:g} is beyond what 32-bit floats hold", centre[axis]));
-    }
-    box.min[axis] = floatBelow(centre[axis] - radius);
-    box.max[axis] = floatAbove(centre[axis] + radius);
+/// A sum of two numbers, and its rounding error.
+struct ExactSum {
+  ExactSum(double a, double b) : value(a + b) {
+    const double part = value - a;
+    error = (a - (value - part)) + (b - part);
   }
-  return box;
+  double value;
+  double error;
+};
+
+// The nearest float that is not above, or not below, a sum.
+float floatBelow(const ExactSum& sum) {
+  const auto near = static_cast<float>(sum.value);
+  const bool above = near > sum.value || (near == sum.value && sum.error < 0);
+  return above ? std::nextafter(near, -kMaxFloat) : near;
+}
+float floatAbove(const ExactSum& sum) {
+  const auto near = static_cast<float>(sum.value);
+  const bool below = near < sum.value || (near == sum.value && sum.error > 0);
+  return below ? std::nextafter(near, kMaxFloat) : near;
 }
 
 double radiusOf(const LineReader& lines, const std::vector<std::string_view>& words,
@@ -48,8 +50,8 @@ double radiusOf(const LineReader& lines, const std::vector<std::string_view>& wo
 
 class TextFrames final : public IndexedFrames {
  public:
-  TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,
-             std::string object_type)
+  TextFrames(const std::vector<std::filesystem::path>& files, std::unique_ptr<TextFormat> format,
+             std::string object_type, ImportSummary& summary)
       : files_(files), format_(std::move(format)) {
     scene_.name = sequenceName(files);
     scene_.object_type = std::move(object_type);
@@ -59,6 +61,8 @@ class TextFrames final : public IndexedFrames {
     scene_.objects = static_cast<std::uint32_t>(ids_.size());
     scene_.frames = static_cast<std::uint32_t>(locations_.size() - 1);
     boxes_.resize(ids_.size());
+    setFilter();
+    summarise(summary);
   }
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
@@ -73,6 +77,7 @@ class TextFrames final : public IndexedFrames {
 
   void scan(std::size_t file) {
     LineReader lines(files_[file]);
+    format_->start(lines);
     const std::size_t before = locations_.size();
     while (true) {
       const FrameLocation location{.file = file, .position = lines.position()};
@@ -88,8 +93,10 @@ class TextFrames final : public IndexedFrames {
   /// Reads a frame into frame_. Returns false at the end of the file.
   bool readNext(LineReader& lines) {
     frame_.number.reset();
+    frame_.time.reset();
+    frame_.has_ids = true;
     frame_.rows.clear();
-    return format_(lines, frame_);
+    return format_->read(lines, frame_);
   }
 
   void addFrame(const LineReader& lines, FrameLocation location) {
@@ -104,6 +111,16 @@ class TextFrames final : public IndexedFrames {
                 static_cast<std::uint64_t>(*last_number_) - 1;
     }
     last_number_ = frame_.number;
+    if (frame_.time && last_time_ && !(*frame_.time > *last_time_)) {
+      lines.fail(frame_.rows.front().line,
+                 fmt::format("time {} after time {}: frames must be in ascending order",
+                             *frame_.time, *last_time_));
+    }
+    last_time_ = frame_.time;
+    if (!locations_.empty() && frame_.has_ids != has_ids_) {
+      lines.fail("only some frames have ids: all or none are expected");
+    }
+    has_ids_ = frame_.has_ids;
     if (skipped >= kMaxFrames || locations_.size() + skipped > kMaxFrames) {
       lines.fail(frame_.rows.empty() ? lines.number() : frame_.rows.front().line,
                  fmt::format("more than {} frames", kMaxFrames));
@@ -124,7 +141,10 @@ class TextFrames final : public IndexedFrames {
       lines.fail(std::next(duplicate)->line, fmt::format("{} is already in this frame, in line {}",
                                                          duplicate->id, duplicate->line));
     }
-    for (const TextRow& row : rows) scene_.world = merged(scene_.world, row.box);
+    for (const TextRow& row : rows) {
+      scene_.world = merged(scene_.world, row.box);
+      addLayer(lines, row);
+    }
     const auto same_id = [](const TextRow& row, std::int64_t id) { return row.id == id; };
     if (std::ranges::equal(rows, ids_, same_id)) return;
     if (locations_.size() > 1) scene_.all_present = false;
@@ -137,8 +157,38 @@ class TextFrames final : public IndexedFrames {
     ids_ = std::move(all);
   }
 
+  void addLayer(const LineReader& lines, const TextRow& row) {
+    if (!row.layer) return;
+    const auto known = layers_.try_emplace(row.id, *row.layer).first;
+    if (known->second == *row.layer) return;
+    lines.fail(row.line, fmt::format("{} is in layer {}, before in {}: a body's layer is fixed",
+                                     row.id, *row.layer, known->second));
+  }
+
+  void setFilter() {
+    std::vector<BodyGroups> groups(layers_.empty() ? 0 : ids_.size());
+    for (std::size_t body = 0; body < groups.size(); ++body) {
+      groups[body].layer = layers_.at(ids_[body]);
+    }
+    if (!groups.empty()) scene_.filter = CollisionFilter(groups, LayerMatrix::all());
+  }
+
+  void summarise(ImportSummary& summary) const {
+    const std::string format = summary.format;
+    summary = format_->summary();
+    summary.format = format;
+    if (has_ids_ || locations_.size() == 1) return;
+    const bool varies = !scene_.all_present;
+    const std::string order = fmt::format("no ids: a body is identified by its place in a frame{}",
+                                          varies ? ", and their number varies" : "");
+    addOnce(varies || !format_->keepsOrder() ? summary.warnings : summary.used, order);
+  }
+
   LineReader& reader(std::size_t file) {
-    if (!reader_ || reader_file_ != file) reader_.emplace(files_[file]);
+    if (!reader_ || reader_file_ != file) {
+      reader_.emplace(files_[file]);
+      format_->start(*reader_);
+    }
     reader_file_ = file;
     return *reader_;
   }
@@ -159,7 +209,7 @@ class TextFrames final : public IndexedFrames {
   }
 
   std::vector<std::filesystem::path> files_;
-  TextFormat format_;
+  std::unique_ptr<TextFormat> format_;
   SceneInfo scene_;
   std::vector<FrameLocation> locations_;
   std::vector<std::int64_t> ids_;  ///< ascending, by body
@@ -167,33 +217,57 @@ class TextFrames final : public IndexedFrames {
   std::size_t reader_file_ = 0;
   TextFrame frame_;
   std::optional<std::int64_t> last_number_;  ///< of the previous frame
+  std::optional<double> last_time_;
+  bool has_ids_ = true;
+  std::unordered_map<std::int64_t, std::uint8_t> layers_;  ///< by id, if they are stated
   std::vector<Aabb> boxes_;
 };
 
 }  // namespace
 
 std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
-                                              TextFormat format, std::string object_type) {
-  return std::make_unique<TextFrames>(files, std::move(format), std::move(object_type));
+                                              std::unique_ptr<TextFormat> format,
+                                              std::string object_type, ImportSummary& summary) {
+  return std::make_unique<TextFrames>(files, std::move(format), std::move(object_type), summary);
+}
+
+Aabb boxAround(const LineReader& lines, const std::array<double, 3>& centre,
+               const std::array<double, 3>& half) {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(centre[axis]) + half[axis] <= kMaxFloat)) {
+      lines.fail(fmt::format("{:g} is beyond what 32-bit floats hold", centre[axis]));
+    }
+    box.min[axis] = floatBelow({centre[axis], -half[axis]});
+    box.max[axis] = floatAbove({centre[axis], half[axis]});
+  }
+  return box;
 }
 
 void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
-                   const ParticleColumns& columns, double radius) {
+                   const ParticleColumns& columns, double radius, const Cell& cell) {
+  frame.has_ids = columns.id.has_value();
   std::vector<std::string_view> words;
   for (std::int64_t i = 0; i < count; ++i) {
     lines.require(fmt::format("{} {} of {}", columns.what, i + 1, count));
     splitWords(lines.line(), words);
-    if (words.size() < columns.count) {
+    if (words.size() < columns.count || (words.size() > columns.count && !columns.more)) {
       lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.count));
     }
-    std::array<double, 3> centre{};
+    std::array<double, 3> centre = columns.is_scaled ? cell.origin : std::array<double, 3>{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = lines.realNumber(words[columns.position[axis]], "a coordinate");
-      centre[axis] = columns.low[axis] + value * columns.extent[axis];
+      double edges = columns.is_scaled ? value : 0;
+      if (columns.images) {
+        edges +=
+            static_cast<double>(lines.integer(words[(*columns.images)[axis]], "an image flag"));
+      }
+      if (!columns.is_scaled) centre[axis] += value;
+      for (std::size_t i = 0; i < 3; ++i) centre[i] += edges * cell.edges[axis][i];
     }
     const double size = radiusOf(lines, words, columns, radius);
     frame.rows.push_back({.id = columns.id ? lines.integer(words[*columns.id], "the id") : i,
-                          .box = ballBox(lines, centre, size),
+                          .box = boxAround(lines, centre, {size, size, size}),
                           .line = lines.number()});
   }
 }

@@ -10,6 +10,8 @@ namespace broadmark {
 /// Each is a command line option; results state those that are not at their defaults.
 struct ReadingOptions : Parametrised {
   bool swept = false;
+  Choice format{"auto", {"auto", "csv", "xyz", "lammps", "ply", "obj", "stl", "gltf"}};
+  bool strict = false;
   Choice elements{"triangles", {"vertices", "edges", "triangles", "all"}};
   Choice keep{"none", {"none", "shared-vertices"}};
   double radius = 0;
@@ -22,6 +24,9 @@ struct ReadingOptions : Parametrised {
            "extend each box to contain that of the previous frame, too, rounded outward, as for "
            "continuous collision detection",
            &swept});
+    visit(
+        {"format", "imported files: their format, instead of recognising it by content", &format});
+    visit({"strict", "imported files: fail if anything in them would be left out", &strict});
     visit({"elements", "meshes: the elements that become boxes", &elements});
     visit({"keep", "meshes: also report pairs of elements that share a vertex", &keep});
     visit({"radius", "particles: radius; 0: as stated in the file", &radius, 0, kMaxRadius});

@@ -1,6 +1,9 @@
 // Particle trajectories in text dumps of LAMMPS. They consist of sections "ITEM: …"; the last one
 // of each frame names the columns and holds a line for each atom, in any order.
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "imports/text_frames.h"
@@ -9,6 +12,8 @@
 namespace broadmark::sources::lammps {
 namespace {
 
+using imports::addOnce;
+using imports::Cell;
 using imports::LineReader;
 using imports::ParticleColumns;
 using imports::TextFrame;
@@ -18,129 +23,250 @@ constexpr std::string_view kItem = "ITEM: ";
 /// The sections of a frame before the atoms.
 struct FrameHeader {
   std::int64_t atoms = -1;  ///< -1: not stated
-  std::array<double, 3> low{};
-  std::array<double, 3> high{};
-  bool has_bounds = false;    ///< low and high are stated
-  bool is_triclinic = false;  ///< the box is not a cuboid
+  std::optional<Cell> cell;
 };
 
-ParticleColumns columnsOf(const LineReader& lines, const std::vector<std::string_view>& names,
-                          const FrameHeader& header) {
-  const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end()) return {};
-    return static_cast<std::size_t>(found - names.begin());
-  };
+/// Names of columns of positions, the best first: unwrapped ones before those that image flags
+/// unwrap.
+struct PositionColumns {
+  std::array<std::string_view, 3> names;
+  bool is_scaled;
+  bool is_wrapped;
+};
+constexpr PositionColumns kPositions[] = {{{"xu", "yu", "zu"}, false, false},
+                                          {{"xsu", "ysu", "zsu"}, true, false},
+                                          {{"x", "y", "z"}, false, true},
+                                          {{"xs", "ys", "zs"}, true, true}};
+constexpr std::array<std::string_view, 3> kImages = {"ix", "iy", "iz"};
+
+/// Finds columns by their names.
+class ColumnNames {
+ public:
+  explicit ColumnNames(std::vector<std::string_view> names) : names_(std::move(names)) {}
+
+  [[nodiscard]] std::size_t count() const { return names_.size(); }
+  std::optional<std::size_t> use(std::string_view name) {
+    const auto found = std::ranges::find(names_, name);
+    if (found == names_.end()) return {};
+    used_.push_back(name);
+    return static_cast<std::size_t>(found - names_.begin());
+  }
+  /// All or none.
+  std::optional<std::array<std::size_t, 3>> use(const std::array<std::string_view, 3>& names) {
+    const auto is_there = [&](std::string_view name) {
+      return std::ranges::find(names_, name) != names_.end();
+    };
+    if (!std::ranges::all_of(names, is_there)) return {};
+    return std::array{*use(names[0]), *use(names[1]), *use(names[2])};
+  }
+  [[nodiscard]] const std::vector<std::string_view>& used() const { return used_; }
+  [[nodiscard]] std::vector<std::string_view> unused() const {
+    std::vector<std::string_view> unused = names_;
+    std::erase_if(unused, [&](std::string_view name) {
+      // These tell what an atom is, not where.
+      return name == "type" || name == "element" || std::ranges::find(used_, name) != used_.end();
+    });
+    return unused;
+  }
+
+ private:
+  std::vector<std::string_view> names_;
+  std::vector<std::string_view> used_;
+};
+
+/// Sets the columns of positions and image flags.
+void setPositions(const LineReader& lines, ColumnNames& names, const FrameHeader& header,
+                  ParticleColumns& columns) {
+  for (const PositionColumns& positions : kPositions) {
+    const auto found = names.use(positions.names);
+    if (!found) continue;
+    columns.position = *found;
+    columns.is_scaled = positions.is_scaled;
+    if (positions.is_wrapped) columns.images = names.use(kImages);
+    if ((columns.is_scaled || columns.images) && !header.cell) {
+      lines.fail("scaled positions and image flags need the box: 'ITEM: BOX BOUNDS' is expected");
+    }
+    return;
+  }
+  lines.fail("no position columns: 'x y z', 'xu yu zu', 'xs ys zs' or 'xsu ysu zsu' is expected");
+}
+
+ParticleColumns columnsOf(const LineReader& lines, ColumnNames& names, const FrameHeader& header,
+                          double radius) {
   ParticleColumns columns{.what = "atom",
                           .no_radius = "no column 'radius' or 'diameter': set it with --radius",
-                          .id = find("id"),
-                          .radius = find("radius"),
-                          .count = names.size()};
+                          .id = names.use("id"),
+                          .count = names.count()};
+  setPositions(lines, names, header, columns);
+  if (radius > 0) return columns;
+  columns.radius = names.use("radius");
   if (!columns.radius) {
-    columns.radius = find("diameter");
+    columns.radius = names.use("diameter");
     columns.is_diameter = columns.radius.has_value();
   }
-  struct CoordinateColumns {
-    std::array<std::string_view, 3> names;
-    bool scaled;
-  };
-  constexpr CoordinateColumns kColumns[] = {{{"x", "y", "z"}, false},
-                                            {{"xu", "yu", "zu"}, false},
-                                            {{"xs", "ys", "zs"}, true},
-                                            {{"xsu", "ysu", "zsu"}, true}};
-  for (const CoordinateColumns& coordinates : kColumns) {
-    const auto x = find(coordinates.names[0]);
-    const auto y = find(coordinates.names[1]);
-    const auto z = find(coordinates.names[2]);
-    if (!x || !y || !z) continue;
-    columns.position = {*x, *y, *z};
-    if (!coordinates.scaled) return columns;
-    if (!header.has_bounds || header.is_triclinic) {
-      lines.fail("scaled positions need a cuboid box ('ITEM: BOX BOUNDS'): dump x y z");
-    }
-    columns.low = header.low;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      columns.extent[axis] = header.high[axis] - header.low[axis];
-    }
-    return columns;
-  }
-  lines.fail("no position columns: 'x y z', 'xu yu zu' or 'xs ys zs' is expected");
+  return columns;
 }
 
-void readBounds(LineReader& lines, FrameHeader& header) {
+/// Reads the next line as numbers, at least `count` of them.
+std::vector<double> boundsIn(LineReader& lines, std::size_t count) {
+  lines.require("the bounds of the box");
   std::vector<std::string_view> words;
   imports::splitWords(lines.line(), words);
-  header.is_triclinic = std::ranges::find(words, "xy") != words.end();
-  header.has_bounds = true;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lines.require("the bounds of the box");
-    imports::splitWords(lines.line(), words);
-    if (words.size() < 2) lines.fail("two bounds of the box are expected");
-    header.low[axis] = lines.realNumber(words[0], "a bound of the box");
-    header.high[axis] = lines.realNumber(words[1], "a bound of the box");
+  if (words.size() != count) {
+    lines.fail(fmt::format("{} bounds of the box: {} are expected", words.size(), count));
   }
+  std::vector<double> numbers;
+  for (const std::string_view word : words) {
+    numbers.push_back(lines.realNumber(word, "a bound of the box"));
+  }
+  return numbers;
 }
 
-/// Reads the sections before the atoms, up to the line with the names of the atoms' columns.
-/// Returns false at the end of the file.
-bool readHeader(LineReader& lines, FrameHeader& header) {
-  for (bool first = true; lines.next(); first = false) {
-    const std::string_view line = lines.line();
-    if (first && imports::isBlank(line)) {
-      first = true;
-      continue;
+/// Reads a box given by three edges and a corner: "ax ay az x", …
+Cell generalCell(LineReader& lines) {
+  Cell cell;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<double> numbers = boundsIn(lines, 4);
+    std::copy_n(numbers.begin(), 3, cell.edges[i].begin());
+    cell.origin[i] = numbers[3];
+  }
+  return cell;
+}
+
+/// Reads a cuboid's bounds, or, of a slanted box, those of the cuboid around it, and its tilts.
+Cell boundedCell(LineReader& lines, bool is_slanted) {
+  std::array<std::vector<double>, 3> bounds;
+  for (auto& numbers : bounds) numbers = boundsIn(lines, is_slanted ? 3 : 2);
+  const double xy = is_slanted ? bounds[0][2] : 0;
+  const double xz = is_slanted ? bounds[1][2] : 0;
+  const double yz = is_slanted ? bounds[2][2] : 0;
+  const auto [x_low, x_high] = std::minmax({0.0, xy, xz, xy + xz});
+  const auto [y_low, y_high] = std::minmax({0.0, yz});
+  const std::array<double, 3> low = {bounds[0][0] - x_low, bounds[1][0] - y_low, bounds[2][0]};
+  const std::array<double, 3> high = {bounds[0][1] - x_high, bounds[1][1] - y_high, bounds[2][1]};
+  return {
+      .origin = low,
+      .edges = {{{high[0] - low[0], 0, 0}, {xy, high[1] - low[1], 0}, {xz, yz, high[2] - low[2]}}}};
+}
+
+class DumpFormat final : public imports::TextFormat {
+ public:
+  explicit DumpFormat(double radius) : radius_(radius) {}
+
+  [[nodiscard]] bool keepsOrder() const override { return false; }
+
+  bool read(LineReader& lines, TextFrame& frame) override {
+    FrameHeader header;
+    if (!readHeader(lines, header)) return false;
+    const std::string names_line(lines.line());
+    std::vector<std::string_view> words;
+    imports::splitWords(names_line, words);
+    words.erase(words.begin(), words.begin() + 2);
+    ColumnNames names(words);
+    const ParticleColumns columns = columnsOf(lines, names, header, radius_);
+    if (names_line != described_) describe(names, names_line);
+    imports::readParticles(lines, frame, header.atoms, columns, radius_,
+                           header.cell.value_or(Cell()));
+    return true;
+  }
+
+ private:
+  void describe(const ColumnNames& names, const std::string& line) {
+    described_ = line;
+    addOnce(summary_.used, fmt::format("columns {}", fmt::join(names.used(), ", ")));
+    if (const auto unused = names.unused(); !unused.empty()) {
+      addOnce(summary_.left_out, fmt::format("columns {}", fmt::join(unused, ", ")));
     }
-    if (!line.starts_with(kItem)) lines.fail("'ITEM: …' is expected");
-    const std::string_view item = line.substr(kItem.size());
-    if (item.starts_with("ATOMS")) {
-      if (header.atoms < 0) lines.fail("'ITEM: NUMBER OF ATOMS' is expected before the atoms");
-      return true;
+  }
+
+  /// Reads the sections before the atoms, up to the line with the names of the atoms' columns.
+  /// Returns false at the end of the file.
+  bool readHeader(LineReader& lines, FrameHeader& header) {
+    do {
+      if (!lines.next()) return false;
+    } while (imports::isBlank(lines.line()));
+    while (true) {
+      if (!lines.line().starts_with(kItem)) lines.fail("'ITEM: …' is expected");
+      const std::string item(imports::trimmed(lines.line().substr(kItem.size())));
+      if (item == "ATOMS" || item.starts_with("ATOMS ")) break;
+      readSection(lines, item, header);
+      lines.require("'ITEM: ATOMS'");
     }
+    if (header.atoms < 0) lines.fail("'ITEM: NUMBER OF ATOMS' is expected before the atoms");
+    return true;
+  }
+
+  void readSection(LineReader& lines, const std::string& item, FrameHeader& header) {
     if (item.starts_with("BOX BOUNDS")) {
-      readBounds(lines, header);
-    } else if (item.starts_with("NUMBER OF ATOMS")) {
+      header.cell = readBounds(lines, item.substr(std::string_view("BOX BOUNDS").size()));
+    } else if (item == "NUMBER OF ATOMS") {
       lines.require("a number of atoms");
-      header.atoms = lines.integer(lines.line(), "the number of atoms");
+      header.atoms = lines.integer(imports::trimmed(lines.line()), "the number of atoms");
       if (header.atoms < 0) lines.fail("a negative number of atoms");
-    } else if (item.starts_with("TIMESTEP") || item.starts_with("UNITS") ||
-               item.starts_with("TIME")) {
+    } else if (item == "UNITS") {
+      lines.require("units");
+      summary_.units = imports::trimmed(lines.line());
+    } else if (item == "TIMESTEP" || item == "TIME") {
       lines.require("a value");
     } else {
-      lines.fail("an unknown ITEM: TIMESTEP, NUMBER OF ATOMS, BOX BOUNDS or ATOMS is expected");
+      lines.fail(
+          fmt::format("ITEM: {} is not read: TIMESTEP, TIME, UNITS, NUMBER OF ATOMS, BOX "
+                      "BOUNDS or ATOMS is expected",
+                      imports::quoted(item)));
     }
   }
-  if (header.atoms >= 0) lines.require("'ITEM: ATOMS'");
-  return false;
-}
 
-bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
-  FrameHeader header;
-  if (!readHeader(lines, header)) return false;
-  std::vector<std::string_view> words;
-  const std::string names(lines.line().substr(kItem.size()));
-  imports::splitWords(names, words);
-  words.erase(words.begin());
-  const ParticleColumns columns = columnsOf(lines, words, header);
-  imports::readParticles(lines, frame, header.atoms, columns, radius);
-  return true;
+  /// The words behind "BOX BOUNDS" name the form of the box, and its boundaries: "pp", "ff".
+  Cell readBounds(LineReader& lines, std::string_view form) {
+    std::vector<std::string_view> words;
+    imports::splitWords(form, words);
+    const auto starts_with = [&](std::initializer_list<std::string_view> start) {
+      const bool found =
+          words.size() >= start.size() && std::equal(start.begin(), start.end(), words.begin());
+      if (found) words.erase(words.begin(), words.begin() + std::ssize(start));
+      return found;
+    };
+    const bool is_general = starts_with({"abc", "origin"});
+    const bool is_slanted = !is_general && starts_with({"xy", "xz", "yz"});
+    for (const std::string_view word : words) {
+      if (word.size() <= 2 && word.find_first_not_of("pfsm") == std::string_view::npos) continue;
+      lines.fail(
+          fmt::format("BOX BOUNDS {}: 'xy xz yz', 'abc origin' or boundaries like 'pp' are "
+                      "expected",
+                      imports::quoted(word)));
+    }
+    const bool is_periodic =
+        std::ranges::any_of(words, [](std::string_view word) { return word.starts_with('p'); });
+    if (is_periodic) addOnce(summary_.left_out, "pairs across periodic boundaries (p)");
+    return is_general ? generalCell(lines) : boundedCell(lines, is_slanted);
+  }
+
+  double radius_;
+  std::string described_;  ///< line with the names of columns
+};
+
+bool recognises(const imports::FileStart& start) {
+  const std::size_t begin = std::min(start.text.find_first_not_of(" \t\r\n"), start.text.size());
+  return std::string_view(start.text).substr(begin).starts_with(kItem);
 }
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
                                     const ReadingOptions& options,
                                     imports::ImportSummary& summary) {
   summary.format = "LAMMPS dump";
-  const auto format = [radius = options.radius](LineReader& lines, TextFrame& frame) {
-    return readFrame(lines, frame, radius);
-  };
-  return imports::openTextFrames(files, format, "Particles");
+  return imports::openTextFrames(files, std::make_unique<DumpFormat>(options.radius), "Particles",
+                                 summary);
 }
 
 }  // namespace
 
 SourceKind kind() {
-  return {.what = "LAMMPS dumps (.lammpstrj, .dump)",
-          .import = FileImport{
-              .extensions = {".lammpstrj", ".dump"}, .options = {"radius"}, .open = open}};
+  return {.what = "LAMMPS dumps (.dump, .lammpstrj)",
+          .import = FileImport{.formats = {"lammps"},
+                               .extensions = {".dump", ".lammpstrj", ".lammpsdump"},
+                               .options = {"radius"},
+                               .recognises = recognises,
+                               .open = open}};
 }
 
 }  // namespace broadmark::sources::lammps

@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
 
 #include "broadmark/error.h"
+#include "broadmark/json_fields.h"
 #include "broadmark/names.h"
 #include "broadmark/recordings/recording.h"
 #include "broadmark/recordings/swept_frames.h"
-#include "imports/files.h"
 #include "request/sweep.h"
 
 namespace broadmark {
@@ -89,6 +90,12 @@ void setSweptParameters(std::vector<SweptSimulation>& simulations, const Paramet
   }
 }
 
+/// Whether a source is imported in this way even if no format is stated.
+bool isRecognised(const std::string& name, const FileImport& import) {
+  const auto found = importOf(name);
+  return found && found->formats == import.formats && import.formats.size() == 1;
+}
+
 }  // namespace
 
 std::string recordingKindsText() {
@@ -132,18 +139,27 @@ Source importedSource(const std::vector<std::string>& names, const FileImport& i
                       ReadingOptions options) {
   Source source;
   source.imported =
-      import.open(imports::expandNames(names, import.extensions), options, source.summary);
+      import.open(filesToImport(names, import, options.format.value), options, source.summary);
   source.reference.scene = source.imported->scene();
-  source.reference.path = names.front();
+  source.reference.path = NamedSource(names.front()).name();
+  std::vector<std::string> left_out = source.summary.left_out;
+  std::ranges::copy(source.summary.warnings, std::back_inserter(left_out));
+  if (options.strict && !left_out.empty()) {
+    throw InputError(fmt::format("{}: --strict: left out: {}", source.reference.path,
+                                 onOneLine(fmt::format("{}", fmt::join(left_out, "; ")))));
+  }
   source.reference.reading = options.changed();
+  // A format is stated only if it is needed to read the file again.
+  const bool needs_format = options.format.value != "auto" && !isRecognised(names.front(), import);
   std::erase_if(source.reference.reading, [&](const auto& option) {
+    if (option.first == "format") return !needs_format;
     return std::ranges::find(import.options, option.first) == import.options.end();
   });
   return source;
 }
 
 Source fileSource(const std::vector<std::string>& names, const ReadingOptions& reading) {
-  const auto import = importOf(names.front());
+  const auto import = importOf(names.front(), reading.format.value);
   std::vector<PlanEntry> entries(1);
   Source& source = entries.front().source;
   source = import ? importedSource(names, *import, reading) : recordingSource(names.front());

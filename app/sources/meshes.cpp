@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "imports/element_frames.h"
+#include "imports/mesh_format.h"
 #include "parts.h"
 #include "sources/source.h"
 
@@ -15,8 +16,13 @@ SourceKind kind() {
   const std::string shown =
       parts::kAssimp.included ? fmt::format("{}", fmt::join(extensions, ", ")) : ".obj";
   return {.what = fmt::format("meshes and animations ({})", shown),
-          .import = FileImport{.extensions = extensions,
+          .import = FileImport{.formats = {"ply", "obj", "stl", "gltf"},
+                               .extensions = extensions,
                                .options = {"elements", "keep", "frame_rate"},
+                               .recognises =
+                                   [](const imports::FileStart& start) {
+                                     return !imports::meshFormat(start).empty();
+                                   },
                                .open = imports::openElements}};
 }
 

@@ -12,8 +12,11 @@
 #include "broadmark/files.h"
 #include "broadmark/json_fields.h"
 #include "broadmark/names.h"
+#include "broadmark/recordings/recording.h"
 #include "imports/files.h"
+#include "imports/line_reader.h"
 #include "sources/make_source.h"
+#include "support/words.h"
 
 namespace broadmark {
 
@@ -30,17 +33,66 @@ std::string kindsText(const std::vector<SourceKind>& kinds) {
   return fmt::format("{}", fmt::join(kinds | std::views::transform(&SourceKind::what), ", "));
 }
 
-/// Whether this kind can open the source.
-bool opens(const SourceKind& kind, NamedSource& source) {
-  if (!kind.import) return kind.recognises(source);
-  const auto files = imports::expandName(source.name(), kind.import->extensions);
-  return !files.empty() && imports::hasExtension(files.front(), kind.import->extensions);
+namespace fs = std::filesystem;
+
+std::vector<SourceKind> importKinds() {
+  std::vector<SourceKind> kinds = sourceKinds();
+  std::erase_if(kinds, [](const SourceKind& kind) { return !kind.import; });
+  return kinds;
 }
 
-OpenedSource openWith(const SourceKind& kind, NamedSource& source, const OpeningOptions& options) {
-  if (!kind.import) return kind.open(source, options);
-  return OpenedSource(
-      {.source = importedSource({source.name()}, *kind.import, options.reading), .cases = {}});
+/// Whether the name is that of a recording: these are not read to recognise them.
+bool isRecordingName(const fs::path& path) {
+  return imports::hasExtension(path, recordingExtensions());
+}
+
+const SourceKind* kindByContent(const std::vector<SourceKind>& kinds, const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (!fs::exists(status) || fs::is_directory(status) || isRecordingName(file)) return nullptr;
+  try {
+    const imports::FileStart start = imports::startOf(file);
+    const auto kind = std::ranges::find_if(
+        kinds, [&](const SourceKind& other) { return other.import->recognises(start); });
+    return kind == kinds.end() ? nullptr : &*kind;
+  } catch (const InputError&) {
+    if (!fs::is_regular_file(status)) throw;
+    return nullptr;  // the reader for its name says what is wrong
+  }
+}
+
+const SourceKind* kindByName(const std::vector<SourceKind>& kinds, const fs::path& file) {
+  const auto kind = std::ranges::find_if(kinds, [&](const SourceKind& other) {
+    return imports::hasExtension(file, other.import->extensions);
+  });
+  return kind == kinds.end() ? nullptr : &*kind;
+}
+
+const SourceKind* kindOf(const std::vector<SourceKind>& kinds, const fs::path& file) {
+  const SourceKind* kind = kindByContent(kinds, file);
+  return kind == nullptr ? kindByName(kinds, file) : kind;
+}
+
+/// The kind of a folder's files: of those recognised by their content, if there are any. Throws
+/// InputError if there are several kinds.
+const SourceKind* kindOfFolder(const std::vector<SourceKind>& kinds, const std::string& folder) {
+  std::vector<fs::path> files = imports::expandName(folder);
+  imports::sortNaturally(files);
+  for (const auto& find : {kindByContent, kindByName}) {
+    const SourceKind* found = nullptr;
+    for (const fs::path& file : files) {
+      const SourceKind* kind = find(kinds, file);
+      if (kind == nullptr || kind == found) continue;
+      if (found != nullptr) {
+        throw InputError(fmt::format(
+            "{}: holds {} and {}: choose files by a pattern like '{}'", folder, found->what,
+            kind->what, (fs::path(folder) / ("*" + file.extension().string())).string()));
+      }
+      found = kind;
+    }
+    if (found != nullptr) return found;
+  }
+  return nullptr;
 }
 
 /// Error for a source that no kind recognises.
@@ -48,10 +100,33 @@ InputError unknownSource(NamedSource& source) {
   if (!source.isFile()) {
     return InputError(unknownName("scene", source.name(), sceneIds()) + ", and no such file");
   }
+  std::error_code ignored;
+  if (fs::is_directory(source.path(), ignored)) {
+    return InputError(fmt::format("{}: holds no file that can be imported; expected: {}",
+                                  source.name(), importKindsText()));
+  }
+  if (!source.isJson()) {
+    static_cast<void>(openForReading(source.path()));  // throws if that is the reason
+    return InputError(
+        fmt::format("{}: its content is of no known kind; expected: {}; --format "
+                    "names that of imported files",
+                    source.name(), sourceKindsText()));
+  }
   const std::string& schema = source.schema();
   const std::string kind =
       schema.empty() ? "no \"schema\"" : fmt::format("unknown \"schema\" '{}'", onOneLine(schema));
   return InputError(fmt::format("{}: {}; expected: {}", source.name(), kind, sourceKindsText()));
+}
+
+OpenedSource openAny(NamedSource& source, const OpeningOptions& options) {
+  if (const auto import = importOf(source.name(), options.reading.format.value)) {
+    return OpenedSource(
+        {.source = importedSource({source.name()}, *import, options.reading), .cases = {}});
+  }
+  for (const SourceKind& kind : sourceKinds()) {
+    if (!kind.import && kind.recognises(source)) return kind.open(source, options);
+  }
+  throw unknownSource(source);
 }
 
 }  // namespace
@@ -96,35 +171,94 @@ bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(n
 
 OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
   NamedSource source(name);
-  for (const SourceKind& kind : sourceKinds()) {
-    if (!opens(kind, source)) continue;
-    OpenedSource opened = openWith(kind, source, options);
-    if (options.reading.swept) {
-      for (PlanEntry& entry : opened.entries) sweepBoxes(entry.source);
+  OpenedSource opened = openAny(source, options);
+  if (options.reading.swept) {
+    for (PlanEntry& entry : opened.entries) sweepBoxes(entry.source);
+  }
+  return opened;
+}
+
+std::optional<FileImport> importOf(const std::string& name, const std::string& format) {
+  if (isSceneId(name)) return {};
+  const std::string file = NamedSource(name).name();
+  const std::vector<SourceKind> kinds = importKinds();
+  const SourceKind* kind = nullptr;
+  if (format != "auto") {
+    const auto has_format = [&](const SourceKind& other) {
+      return std::ranges::count(other.import->formats, format) > 0;
+    };
+    kind = &*std::ranges::find_if(kinds, has_format);
+  } else if (std::error_code ignored; fs::is_directory(file, ignored)) {
+    kind = kindOfFolder(kinds, file);
+  } else if (std::vector<fs::path> files = imports::expandName(file); !files.empty()) {
+    imports::sortNaturally(files);
+    kind = kindOf(kinds, files.front());
+  }
+  return kind == nullptr ? std::nullopt : kind->import;
+}
+
+std::vector<fs::path> filesToImport(const std::vector<std::string>& names, const FileImport& import,
+                                    const std::string& format) {
+  const std::vector<SourceKind> kinds = importKinds();
+  const auto is_of_kind = [&](const fs::path& file) {
+    const SourceKind* kind = kindOf(kinds, file);
+    return kind != nullptr && kind->import->formats == import.formats;
+  };
+  std::vector<fs::path> files;
+  for (const std::string& stated : names) {
+    const std::string name = NamedSource(stated).name();
+    std::vector<fs::path> expanded = imports::expandName(name);
+    std::error_code ignored;
+    if (fs::is_directory(name, ignored)) {
+      std::erase_if(expanded, [&](const fs::path& file) { return !is_of_kind(file); });
+      if (expanded.empty() && format != "auto") expanded = imports::expandName(name);
     }
-    return opened;
+    if (expanded.empty()) {
+      throw InputError(fmt::format("{}: matches no file; expected: {}", name,
+                                   fmt::join(import.extensions, ", ")));
+    }
+    files.insert(files.end(), expanded.begin(), expanded.end());
   }
-  throw unknownSource(source);
+  for (const fs::path& file : files) {
+    if (format != "auto" || is_of_kind(file)) continue;
+    throw InputError(fmt::format("{}: not the same kind of file as {}: {} is expected",
+                                 file.string(), files.front().string(),
+                                 fmt::join(import.formats, ", ")));
+  }
+  imports::sortNaturally(files);
+  return files;
 }
 
-std::optional<FileImport> importOf(const std::string& name) {
-  NamedSource source(name);
-  for (const SourceKind& kind : sourceKinds()) {
-    if (kind.import && opens(kind, source)) return kind.import;
-  }
-  return {};
-}
+std::string importKindsText() { return kindsText(importKinds()); }
 
-std::string importKindsText() {
-  std::vector<SourceKind> kinds = sourceKinds();
-  std::erase_if(kinds, [](const SourceKind& kind) { return !kind.import; });
-  return kindsText(kinds);
+std::string importText(const Source& source) {
+  if (!source.imported) return {};
+  const imports::ImportSummary& summary = source.summary;
+  const SceneInfo& scene = source.imported->scene();
+  const auto corner = [](const auto& point) {
+    return fmt::format("({:.6g} {:.6g} {:.6g})", point[0], point[1], point[2]);
+  };
+  std::string text = fmt::format(
+      "{}: {}: {} {}, initial pose and {}, box {} to {}, units {}", source.reference.path,
+      summary.format, scene.objects, imports::lowered(scene.object_type),
+      counted(scene.frames, "frame"), corner(scene.world.min), corner(scene.world.max),
+      summary.units.empty() ? "not stated" : onOneLine(summary.units));
+  const auto add = [&](const char* what, const std::vector<std::string>& parts) {
+    if (parts.empty()) return;
+    text += fmt::format("\n  {}: {}", what, onOneLine(fmt::format("{}", fmt::join(parts, "; "))));
+  };
+  add("used", summary.used);
+  add("left out", summary.left_out);
+  add("warning", summary.warnings);
+  return text;
 }
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
   for (const auto& [name, value] : options.changed()) {
     const auto uses = [&, key = name](const PlanEntry& entry) {
-      return entry.source.reference.reading.contains(key);
+      const bool is_of_all_imports = key == "format" || key == "strict";
+      return entry.source.reference.reading.contains(key) ||
+             (is_of_all_imports && entry.source.imported);
     };
     if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(

@@ -13,6 +13,7 @@
 #include "broadmark/harness/oracle.h"
 #include "broadmark/results/results.h"
 #include "broadmark/scenes/simulation.h"
+#include "imports/contents.h"
 #include "imports/import_summary.h"
 #include "original/settings.h"
 #include "request/reading_options.h"
@@ -57,7 +58,9 @@ struct OpenedSource {
 /// A source given by name. Its text and schema are read lazily, once.
 class NamedSource {
  public:
-  explicit NamedSource(std::string name) : name_(std::move(name)) {}
+  /// "-": standard input.
+  explicit NamedSource(std::string name)
+      : name_(name == "-" ? imports::kStandardInput : std::move(name)) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::filesystem::path path() const { return name_; }
@@ -86,11 +89,14 @@ struct OpeningOptions {
 
 /// Reader for files of other programs. Several files form a sequence.
 struct FileImport {
+  std::vector<std::string> formats;     ///< values of ReadingOptions::format
   std::vector<std::string> extensions;  ///< in lower case: ".csv"
   std::vector<std::string> options;     ///< names of the ReadingOptions it uses
-  /// Throws InputError.
+  /// Whether the file is of this kind, by its content.
+  bool (*recognises)(const imports::FileStart&) = nullptr;
+  /// Throws InputError. Readers open files with imports::openContents() or LineReader.
   std::unique_ptr<IndexedFrames> (*open)(const std::vector<std::filesystem::path>&,
-                                         const ReadingOptions&, imports::ImportSummary&);
+                                         const ReadingOptions&, imports::ImportSummary&) = nullptr;
 };
 
 /// A kind of source: `broadmark::sources::NAME::kind()` for a NAME in the list in CMakeLists.txt.
@@ -98,7 +104,7 @@ struct SourceKind {
   std::string what;  ///< description for help and messages: "recordings (.aabbs, .posrot)"
   bool (*recognises)(NamedSource&) = nullptr;
   OpenedSource (*open)(NamedSource&, const OpeningOptions&) = nullptr;
-  /// Replaces both functions for files with these extensions, folders of them, and patterns.
+  /// Replaces both functions for files of other programs, folders of them, and patterns.
   std::optional<FileImport> import = {};
 };
 std::vector<SourceKind> sourceKinds();
@@ -111,10 +117,20 @@ bool isSource(const std::string& name);
 /// Opens a source by the first kind that recognises it. Throws InputError.
 OpenedSource openSource(const std::string& name, const OpeningOptions&);
 
-/// Returns how to import a source; nothing if it is not a file of another program.
-std::optional<FileImport> importOf(const std::string& name);
+/// Returns how to import a source; nothing if it is not a file of another program. Its kind is that
+/// of the `format`, unless that is "auto"; else that of its content; else that of its extension.
+/// Throws InputError.
+std::optional<FileImport> importOf(const std::string& name, const std::string& format = "auto");
+/// All files that these names refer to, in natural order; of folders only those of this kind.
+/// Throws InputError for a name without files, or, unless a format is stated, for a file of another
+/// kind.
+std::vector<std::filesystem::path> filesToImport(const std::vector<std::string>& names,
+                                                 const FileImport&, const std::string& format);
 /// Kinds of files that can be imported, for help and messages.
 std::string importKindsText();
+
+/// What was understood of imported files, in a few lines; "" for other sources.
+std::string importText(const Source&);
 
 /// Throws InputError for a reading option that applies to none of these sources.
 void requireReadingUsed(ReadingOptions, const std::vector<PlanEntry>&);

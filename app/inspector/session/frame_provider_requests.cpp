@@ -62,7 +62,7 @@ FrameProviderRequest importSource(const RecordingReference& reference, bool swep
   const auto open = [reference, swept]() -> std::unique_ptr<FrameProvider> {
     ReadingOptions reading;
     setParameters(reading, reference.reading);
-    const auto import = importOf(reference.path);
+    const auto import = importOf(reference.path, reading.format.value);
     if (!import) throw InputError(fmt::format("{}: no longer exists", reference.path));
     Source source = importedSource({reference.path}, *import, reading);
     return std::make_unique<FrameProvider>(std::move(source.imported), swept);
