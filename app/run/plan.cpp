@@ -111,6 +111,18 @@ void requireFrame(const Plan& plan, PlanUse use) {
   }
 }
 
+/// Throws InputError for a recording without a frame to run, unless its initial pose is drawn.
+void requireFrames(const Plan& plan) {
+  for (const PlanEntry& entry : plan.entries) {
+    const RecordingReference& reference = entry.source.reference;
+    if (reference.scene.frames > 0 || !plan.request.screenshot.empty()) continue;
+    throw InputError(fmt::format(
+        "{}: there is nothing to run: it holds one frame, the initial pose, which is not timed; a "
+        "sequence of files, an animation or a trajectory is expected",
+        reference.path.empty() ? reference.scene.name : reference.path));
+  }
+}
+
 /// Names the screenshot of each entry: the requested name, followed by that of the recording if
 /// there are several.
 void nameScreenshots(Plan& plan) {
@@ -153,6 +165,7 @@ Plan makePlan(const RunRequest& request, PlanUse use, std::vector<Algorithm> alg
   validateParameters(plan);
   if (use == PlanUse::run) {
     applyFilterAndShard(plan);
+    requireFrames(plan);
     nameScreenshots(plan);
   }
   requireFrame(plan, use);
