@@ -38,16 +38,18 @@ fs::path outputFor(const SceneInfo& scene, fs::path path) {
 
 int run(const Options& options) {
   const InterruptGuard guard;
-  if (!importOf(options.inputs.front())) {
-    throw InputError(fmt::format("{}: cannot be imported; expected: {}", options.inputs.front(),
-                                 importKindsText()));
+  const std::string& first = options.inputs.front();
+  if (!importOf(first, options.reading.format.value)) {
+    throw InputError(fmt::format("{}: cannot be imported; expected: {}", first, importKindsText()));
   }
   Source source = fileSource(options.inputs, options.reading);
+  const std::string text = importText(source);
   std::unique_ptr<IndexedFrames> frames = std::move(source.imported);
   if (options.reading.swept) frames = std::make_unique<SweptFrames>(std::move(frames));
   const SceneInfo& scene = frames->scene();
   const fs::path path = outputFor(scene, options.output);
-  RecordingWriter writer(path, scene, {.source = source.reference.path});
+  RecordingWriter writer(path, scene, {.source = source.reference.path, .import = text});
+  if (!options.quiet) fmt::print(stderr, "{}\n", text);
   Progress progress("importing " + scene.name, scene.frames, options.quiet);
   const bool is_complete =
       recordAll(*frames, writer, [&](std::uint32_t frame) { return progress.advance(frame); });

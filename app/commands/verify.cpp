@@ -166,6 +166,10 @@ std::optional<DescribedRecording> verifyRecording(const fs::path& file, const Op
     progress.print(fmt::format("{}: ok: {} {}, {}, hash {}{}", file.string(), scene.name,
                                scene.object_type, extentText(scene.objects, scene.frames), hash,
                                stated ? ", as baked" : ""));
+    const auto* stored = dynamic_cast<const Recording*>(opened.get());
+    if (stored != nullptr && !stored->origin().import.empty()) {
+      progress.print("  imported from " + stored->origin().import);
+    }
     if (options.describe) progress.print(formatDescription(scene, *description));
   }
   return DescribedRecording{file.string(), hash, scene, *description};

@@ -127,6 +127,9 @@ int runHeadless(Plan plan, bool quiet) {
   if (plan.entries.empty()) throw InputError("no cases left to run after --filter and --shard");
   requireWritable(plan);
   if (!plan.request.record.empty()) makeDirectory(plan.request.record);
+  for (const PlanEntry& entry : plan.entries) {
+    if (!quiet) printImport(entry.source);
+  }
   const InterruptGuard guard;
   HeadlessRun headless(plan.request, quiet);
   return headless.finish(runPlan(plan, executorFactory(plan.request.hosts), headless));

@@ -91,10 +91,15 @@ std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks
 }
 
 std::unique_ptr<IndexedFrames> openForCommand(Source& source, bool quiet) {
+  if (!quiet) printImport(source);
   TerminalTasks<> tasks(quiet);
   auto recording = openRecording(source, tasks);
   if (!recording) throw Interrupted();
   return recording;
+}
+
+void printImport(const Source& source) {
+  if (const std::string text = importText(source); !text.empty()) fmt::print(stderr, "{}\n", text);
 }
 
 void requireHash(const std::string& what, const std::string& hash, const std::string& expected) {

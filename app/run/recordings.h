@@ -28,8 +28,12 @@ std::unique_ptr<IndexedFrames> openRecording(Source&, TaskObserver&,
                                              const std::filesystem::path& directory = {},
                                              const std::vector<std::string>& recorders = {});
 
-/// Same for a command: shows progress unless `quiet`; throws Interrupted when cancelled.
+/// Same for a command: shows progress and what was imported, unless `quiet`; throws Interrupted
+/// when cancelled.
 std::unique_ptr<IndexedFrames> openForCommand(Source&, bool quiet);
+
+/// Prints importText(), if any, on standard error.
+void printImport(const Source&);
 
 /// Throws InputError, naming `what`, unless `hash` is the `expected` one of a case's recording.
 void requireHash(const std::string& what, const std::string& hash, const std::string& expected);

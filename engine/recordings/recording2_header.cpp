@@ -145,6 +145,7 @@ std::vector<std::byte> recording2Header(const SceneInfo& scene, const RecordingO
     if (!group.in(scene.filter).empty()) groups.push_back(group.key);
   }
   json["source"] = origin.source.empty() ? Json(nullptr) : Json(origin.source);
+  if (!origin.import.empty()) json["import"] = origin.import;
   json["scene_parameters"] = origin.scene_parameters.empty()
                                  ? Json(nullptr)
                                  : parseJson(origin.scene_parameters, "scene parameters");
@@ -182,7 +183,9 @@ SceneInfo Recording2Header::scene() const {
 }
 
 RecordingOrigin Recording2Header::origin() const {
-  RecordingOrigin origin{.source = textIn(fields_, "source"), .scene_parameters = {}};
+  RecordingOrigin origin{.source = textIn(fields_, "source"),
+                         .scene_parameters = {},
+                         .import = textIn(fields_, "import")};
   if (fields_.has("scene_parameters")) {
     const Json& parameters = fields_.at("scene_parameters");
     [[maybe_unused]] const JsonFields object(parameters, fields_.path("scene_parameters"));

@@ -98,6 +98,59 @@ TEST_F(Import, MakesRecordings) {
   EXPECT_THAT(run({"verify", "m*.obj", "--elements", "edges"}).out, HasSubstr("m Edges, 3 bodies"));
 }
 
+TEST_F(Import, SaysWhatItUnderstood) {
+  writeFile(file("mass.csv"),
+            "frame,id,mass,min_x,min_y,min_z,max_x,max_y,max_z\n"
+            "0,0,5,0,0,0,1,1,1\n1,0,5,0,0,0,1,1,2\n");
+  const auto is_said = [&](const std::string& text) {
+    EXPECT_THAT(text, HasSubstr("mass.csv: CSV: 1 boxes, initial pose and 1 frame, box (0 0 0) to "
+                                "(1 1 2), units not stated\n"));
+    EXPECT_THAT(text, HasSubstr("used: columns frame, id, min_x"));
+    EXPECT_THAT(text, HasSubstr("left out: columns mass"));
+  };
+  is_said(run({"import", "mass.csv", "-o", "mass.broadmark"}).err);
+  is_said(run({"--headless", "mass.csv", "--algorithm", "sap"}).err);
+  is_said(run({"verify", "mass.csv"}).err);
+  is_said(run({"verify", "mass.broadmark"}).out);
+  EXPECT_EQ(runQuietly({"import", "mass.csv", "-o", "quiet"}).err, "");
+  expectRefusal({"import", "mass.csv", "--strict", "-o", "no"}, {"mass.csv", "--strict", "mass"});
+  expectRefusal({"--headless", "mass.csv", "--strict"}, {"mass.csv", "--strict", "mass"});
+  writeFile(file("boxes.csv"), kCsv);
+  runQuietly({"--headless", "boxes.csv", "--strict", "--algorithm", "sap"});
+  expectRefusal({"--headless", "freefall", "--strict", "--objects", "5"}, {"--strict"});
+}
+
+TEST_F(Import, ReadsPipesAndCompressedFiles) {
+  writeFile(file("boxes.csv"), kCsv);
+  const std::string options = " --algorithm sap --check full --quiet --json ";
+  ASSERT_EQ(shell("gzip -k boxes.csv && mv boxes.csv.gz named.dat && mkfifo fifo"), 0);
+  EXPECT_EQ(shell("broadmark --headless named.dat" + options + "gz.json"), 0);
+  EXPECT_EQ(shell("cat boxes.csv | broadmark --headless -" + options + "pipe.json"), 0);
+  EXPECT_EQ(shell("cat named.dat | broadmark --headless /dev/stdin" + options + "stdin.json"), 0);
+  EXPECT_EQ(shell("broadmark --headless - " + options + "file.json < boxes.csv"), 0);
+  EXPECT_EQ(shell("(cat boxes.csv > fifo &) && broadmark --headless fifo" + options + "fifo.json"), 0);
+  for (const char* name : {"gz.json", "pipe.json", "stdin.json", "file.json", "fifo.json"}) {
+    EXPECT_THAT(pairsOf(file(name)), ElementsAre(0, 0)) << name;
+  }
+  EXPECT_EQ(shell("cat boxes.csv | broadmark import - -o piped --quiet"), 0);
+  EXPECT_EQ(shell("broadmark verify piped.broadmark --quiet"), 0);
+  EXPECT_EQ(shell("echo hello | broadmark --headless - --quiet"), 2);
+}
+
+TEST_F(Import, OneFrameIsNothingToRun) {
+  writeFile(file("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expectRefusal({"--headless", "m.obj", "--algorithm", "sap"}, {"m.obj", "nothing to run"});
+  runQuietly({"import", "m.obj", "-o", "m.broadmark"});
+  expectRefusal({"--headless", "m.broadmark", "--algorithm", "sap"},
+                {"m.broadmark", "nothing to run"});
+}
+
+TEST_F(Import, AMissingFolderForTemporaryFilesIsNamed) {
+  writeFile(file("boxes.csv"), kCsv);
+  expectRefusal({"--headless", "boxes.csv", "--algorithm", "sap", "--quiet"},
+                {"TMPDIR", "/no/such"}, {.environment = {{"TMPDIR", "/no/such"}}});
+}
+
 TEST_F(Import, BadCalls) {
   writeFile(file("boxes.csv"), kCsv);
   writeFile(file("bad.csv"), "0,0,0,0,0,1,1\n");

@@ -55,6 +55,7 @@ std::string recordingFileName(const SceneInfo&);
 struct RecordingOrigin {
   std::string source;            ///< the source file, if any
   std::string scene_parameters;  ///< a JSON object, as in a baked recording's sidecar; "": unknown
+  std::string import = {};       ///< what was understood of imported files; "": not imported
 
   friend bool operator==(const RecordingOrigin&, const RecordingOrigin&) = default;
 };
