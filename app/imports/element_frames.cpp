@@ -4,48 +4,33 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
+#include <optional>
+#include <tuple>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
-#include "broadmark/scenes/simulation.h"
 #include "imports/files.h"
-#include "imports/mesh.h"
-#include "imports/mesh_format.h"
+#include "imports/mesh_sequence.h"
 
 namespace broadmark::imports {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws InputError unless a file has the same topology as the first one.
-void requireSameTopology(const MeshTopology& mesh, const fs::path& file, const MeshTopology& first,
-                         const fs::path& first_file) {
-  const auto require = [&](std::size_t count, std::size_t expected, const char* what) {
-    if (count == expected) return;
-    throw InputError(fmt::format("{}: {} {}: {} are expected, as in {}", file.string(), count, what,
-                                 expected, first_file.string()));
-  };
-  require(mesh.vertices, first.vertices, "vertices");
-  require(mesh.triangles.size(), first.triangles.size(), "triangles");
-  const auto other = std::ranges::mismatch(mesh.triangles, first.triangles).in1;
-  if (other == mesh.triangles.end()) return;
-  throw InputError(fmt::format("{}: triangle {} has other vertices than in {}", file.string(),
-                               other - mesh.triangles.begin(), first_file.string()));
-}
-
-/// Returns the edges without duplicates, sorted by their vertices.
-std::vector<std::array<std::uint32_t, 2>> edgesOf(const std::vector<Triangle>& triangles) {
+/// Returns the edges of triangles and the lines without duplicates, sorted by their vertices.
+std::vector<std::array<std::uint32_t, 2>> edgesOf(const MeshTopology& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
-  for (const Triangle& triangle : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      if (a != b) edges.push_back({a, b});
-    }
+  const auto add = [&](std::uint32_t first, std::uint32_t second) {
+    edges.push_back({std::min(first, second), std::max(first, second)});
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    if (a != b) add(a, b);
+    if (b != c) add(b, c);
+    if (c != a) add(c, a);
   }
+  for (const auto& [a, b] : mesh.lines) add(a, b);
   std::ranges::sort(edges);
   const auto repeated = std::ranges::unique(edges);
   edges.erase(repeated.begin(), repeated.end());
@@ -59,31 +44,64 @@ std::string typeName(std::string elements) {
   return elements;
 }
 
+/// Text of ascending numbers: "0..4, 8"; of many ranges only the first are shown.
+std::string rangesText(std::span<const std::uint32_t> numbers) {
+  constexpr int kMaxRanges = 4;
+  std::string text;
+  int ranges = 0;
+  for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
+    if (++ranges > kMaxRanges) return text + ", …";
+    for (end = begin + 1; end < numbers.size() && numbers[end] == numbers[end - 1] + 1;) ++end;
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{}", numbers[begin]);
+    if (end > begin + 1) text += fmt::format("..{}", numbers[end - 1]);
+  }
+  return text;
+}
+
+/// Returns for each vertex of a mesh the first one at the same position in all of its frames.
+std::vector<std::uint32_t> joinedVertices(const MeshSequence& sequence, const SequenceMesh& mesh) {
+  std::vector<std::uint32_t> joined(mesh.topology.vertices, 0);
+  std::vector<std::uint32_t> order(joined.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const std::vector<std::uint32_t> vertices = order;
+  std::vector<Point> points;
+  for (const std::uint32_t frame : mesh.frames) {
+    sequence.readPoints(frame, points);
+    const auto stays = [&](std::uint32_t v) { return points[v] == points[joined[v]]; };
+    if (std::ranges::all_of(vertices, stays)) continue;
+    // Vertices that were together, and still are, become neighbours.
+    const auto places = [&](std::uint32_t v) { return std::tie(joined[v], points[v]); };
+    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+      return places(a) != places(b) ? places(a) < places(b) : a < b;
+    });
+    std::vector<std::uint32_t> split(joined.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const bool is_first = i == 0 || places(order[i]) != places(order[i - 1]);
+      split[order[i]] = is_first ? order[i] : split[order[i - 1]];
+    }
+    joined = std::move(split);
+  }
+  return joined;
+}
+
 class ElementFrames final : public IndexedFrames {
  public:
   ElementFrames(const std::vector<fs::path>& files, const ReadingOptions& options,
-                ImportSummary& summary) {
+                ImportSummary& summary)
+      : sequence_(files, options, summary), which_(options.elements.value) {
     scene_.name = sequenceName(files);
-    scene_.object_type = typeName(options.elements.value);
-    scene_.world = kEmptyBox;
-    readFiles(files, options, summary);
-    vertices_.resize(mesh_.vertices);
-    std::iota(vertices_.begin(), vertices_.end(), 0U);
-    if (meshFormat(files.front(), options.format.value) == "stl") joinVertices();
-    addElements(options.elements.value);
-    if (elements_.empty()) {
-      throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
-                                   files.front().string(), options.elements.value));
-    }
-    if (elements_.size() > std::numeric_limits<std::int32_t>::max()) {
-      throw InputError(fmt::format("{}: more than 2^31 - 1 elements", files.front().string()));
-    }
+    scene_.object_type = typeName(which_);
+    scene_.world = sequence_.world();
+    for (const SequenceMesh& mesh : sequence_.meshes()) addBodies(mesh);
     // Vertices never share a vertex.
-    const bool has_neighbours = options.elements.value != "vertices";
-    if (has_neighbours && options.keep.value == "none") excludeNeighbours();
-    scene_.objects = static_cast<std::uint32_t>(elements_.size());
-    scene_.frames = static_cast<std::uint32_t>(frames_ - 1);
-    boxes_.resize(elements_.size());
+    if (which_ != "vertices" && options.keep.value == "none") excludeNeighbours();
+    scene_.objects = bodies_;
+    scene_.frames = sequence_.frames() - 1;
+    scene_.all_present = std::ranges::all_of(
+        meshes_, [&](const MeshBodies& mesh) { return mesh.elements.size() == bodies_; });
+    if (meshes_.size() > 1) summary.used.push_back(meshesText());
+    boxes_.resize(bodies_);
   }
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
@@ -92,105 +110,119 @@ class ElementFrames final : public IndexedFrames {
   /// Indices of its vertices; repeated for edges and vertices.
   using Element = std::array<std::uint32_t, 3>;
 
-  void readFiles(const std::vector<fs::path>& files, const ReadingOptions& options,
-                 ImportSummary& summary) {
-    vertex_file_ = unnamedFile();
-    for (const fs::path& file : files) {
-      const PointSink sink = [&](auto points) { addFrame(points, file); };
-      MeshTopology mesh = meshFormat(file, options.format.value) == "obj"
-                              ? readObj(file, sink, summary)
-                              : readWithAssimp(file, options.frame_rate, sink, summary);
-      if (&file == &files.front()) {
-        mesh_ = std::move(mesh);
+  /// The bodies of a mesh's elements.
+  struct MeshBodies {
+    std::vector<Element> elements = {};
+    std::vector<std::uint32_t> bodies = {};  ///< by element
+    std::vector<std::uint32_t> tags = {};    ///< by vertex
+  };
+
+  void addBodies(const SequenceMesh& mesh) {
+    MeshBodies& added = meshes_.emplace_back(MeshBodies{.elements = elementsOf(mesh)});
+    if (added.elements.empty()) {
+      throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
+                                   mesh.file.string(), which_));
+    }
+    // The elements of the mesh that this one extends are in the same order among the new ones.
+    static const MeshBodies kNone;
+    const MeshBodies& base = mesh.extends ? meshes_[*mesh.extends] : kNone;
+    std::size_t known = 0;
+    for (const Element& element : added.elements) {
+      if (known < base.elements.size() && base.elements[known] == element) {
+        added.bodies.push_back(base.bodies[known++]);
       } else {
-        requireSameTopology(mesh, file, mesh_, files.front());
+        added.bodies.push_back(bodies_++);
+      }
+      if (bodies_ > std::numeric_limits<std::int32_t>::max()) {
+        throw InputError(fmt::format("{}: more than 2^31 - 1 elements", mesh.file.string()));
       }
     }
-  }
-
-  void addFrame(std::span<const Point> points, const fs::path& file) {
-    const auto invalid = std::ranges::find_if(points, [](const Point& point) {
-      return !std::ranges::all_of(point, [](float value) { return std::isfinite(value); });
-    });
-    if (invalid != points.end()) {
-      throw InputError(fmt::format("{}: vertex {} has a coordinate that is no finite 32-bit float",
-                                   file.string(), invalid - points.begin()));
-    }
-    if (frames_ > kMaxFrames) throw InputError(fmt::format("more than {} frames", kMaxFrames));
-    ++frames_;
-    writeAll(vertex_file_.get(), std::as_bytes(points), "the vertices of a mesh");
-    for (const Point& p : points) {
-      const Aabb box = {{p[0], p[1], p[2], 0}, {p[0], p[1], p[2], 0}};
-      scene_.world = merged(scene_.world, box);
+    added.tags = base.tags;
+    while (added.tags.size() < mesh.topology.vertices) added.tags.push_back(tags_++);
+    if (tags_ > std::numeric_limits<std::int32_t>::max()) {
+      throw InputError(
+          fmt::format("{}: more than 2^31 - 1 vertices in all meshes", mesh.file.string()));
     }
   }
 
-  /// Joins vertices at the same position, for files with separate vertices per triangle.
-  void joinVertices() {
-    readPoints(0);
-    std::map<Point, std::uint32_t> first_at;
-    std::vector<std::uint32_t> joined(mesh_.vertices);
-    for (const std::uint32_t vertex : vertices_) {
-      joined[vertex] = first_at.try_emplace(points_[vertex], vertex).first->second;
+  [[nodiscard]] std::vector<Element> elementsOf(const SequenceMesh& mesh) const {
+    MeshTopology topology = mesh.topology;
+    std::vector<std::uint32_t> vertices(topology.vertices);
+    std::iota(vertices.begin(), vertices.end(), 0U);
+    if (topology.joined_by_position) {
+      const std::vector<std::uint32_t> joined = joinedVertices(sequence_, mesh);
+      std::erase_if(vertices, [&](std::uint32_t vertex) { return joined[vertex] != vertex; });
+      for (Triangle& triangle : topology.triangles) {
+        for (std::uint32_t& vertex : triangle) vertex = joined[vertex];
+      }
     }
-    std::erase_if(vertices_, [&](std::uint32_t vertex) { return joined[vertex] != vertex; });
-    for (Triangle& triangle : mesh_.triangles) {
-      for (std::uint32_t& vertex : triangle) vertex = joined[vertex];
+    std::vector<Element> elements;
+    const bool all = which_ == "all";
+    if (all || which_ == "vertices") {
+      for (const std::uint32_t vertex : vertices) elements.push_back({vertex, vertex, vertex});
     }
-  }
-
-  void addElements(const std::string& which) {
-    const bool all = which == "all";
-    if (all || which == "vertices") {
-      for (const std::uint32_t vertex : vertices_) elements_.push_back({vertex, vertex, vertex});
+    if (all || which_ == "edges") {
+      for (const auto& [a, b] : edgesOf(topology)) elements.push_back({a, b, b});
     }
-    if (all || which == "edges") {
-      for (const auto& [a, b] : edgesOf(mesh_.triangles)) elements_.push_back({a, b, b});
+    if (all || which_ == "triangles") {
+      elements.insert(elements.end(), topology.triangles.begin(), topology.triangles.end());
     }
-    if (all || which == "triangles") {
-      elements_.insert(elements_.end(), mesh_.triangles.begin(), mesh_.triangles.end());
-    }
+    return elements;
   }
 
   void excludeNeighbours() {
-    std::vector<BodyGroups> groups;
-    groups.reserve(elements_.size());
-    for (const Element& element : elements_) {
-      BodyGroups& body = groups.emplace_back();
-      std::ranges::copy(element, body.tags.begin());
+    std::vector<BodyGroups> groups(bodies_);
+    for (const MeshBodies& mesh : meshes_) {
+      for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
+        std::ranges::transform(mesh.elements[i], groups[mesh.bodies[i]].tags.begin(),
+                               [&](std::uint32_t vertex) { return mesh.tags[vertex]; });
+      }
     }
     scene_.filter = CollisionFilter(groups, LayerMatrix::all());
   }
 
-  void readPoints(std::uint32_t index) {
-    points_.resize(mesh_.vertices);
-    const auto bytes = std::as_writable_bytes(std::span(points_));
-    if (readAll(vertex_file_.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
-      throw InputError(fmt::format("{}: cannot read frame {}", scene_.name, index));
+  [[nodiscard]] std::string meshesText() const {
+    constexpr std::size_t kMaxShown = 4;
+    std::string text = fmt::format("{} topologies", meshes_.size());
+    for (std::size_t i = 0; i < std::min(meshes_.size(), kMaxShown); ++i) {
+      std::vector<std::uint32_t> bodies = meshes_[i].bodies;
+      std::ranges::sort(bodies);
+      text += fmt::format("{} bodies {} in frames {}", i == 0 ? ":" : ";", rangesText(bodies),
+                          rangesText(sequence_.meshes()[i].frames));
     }
+    if (meshes_.size() > kMaxShown) text += "; …";
+    return text +
+           "; a file with the elements of another, or with more behind those of the file "
+           "before, continues their bodies";
   }
 
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
-    readPoints(index);
-    for (std::size_t body = 0; body < boxes_.size(); ++body) {
-      const auto& [a, b, c] = elements_[body];
+    sequence_.readPoints(index, points_);
+    const std::size_t mesh = sequence_.meshOf(index);
+    if (shown_mesh_ != mesh) std::ranges::fill(boxes_, kEmptyBox);
+    shown_mesh_ = mesh;
+    const auto& [elements, bodies, tags] = meshes_[mesh];
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const auto& [a, b, c] = elements[i];
+      Aabb& box = boxes_[bodies[i]];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto [min, max] = std::minmax({points_[a][axis], points_[b][axis], points_[c][axis]});
-        boxes_[body].min[axis] = min;
-        boxes_[body].max[axis] = max;
+        box.min[axis] = min;
+        box.max[axis] = max;
       }
     }
     return boxes_;
   }
 
   SceneInfo scene_;
-  MeshTopology mesh_;
-  std::vector<std::uint32_t> vertices_;  ///< distinct vertices, ascending
-  std::vector<Element> elements_;        ///< by body
-  FileDescriptor vertex_file_;           ///< vertices of all frames, concatenated
-  std::uint64_t frames_ = 0;
+  MeshSequence sequence_;
+  std::string which_;               ///< --elements
+  std::vector<MeshBodies> meshes_;  ///< as MeshSequence::meshes()
+  std::uint32_t bodies_ = 0;        ///< number of bodies of all meshes
+  std::uint32_t tags_ = 0;          ///< number of vertices of all meshes
   std::vector<Point> points_;
   std::vector<Aabb> boxes_;
+  std::optional<std::size_t> shown_mesh_;  ///< mesh of the bodies in boxes_ that are present
 };
 
 }  // namespace

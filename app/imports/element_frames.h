@@ -13,8 +13,9 @@ namespace broadmark::imports {
 
 /// Creates a body for each requested element: vertices in file order, edges sorted by their
 /// vertices, then triangles in file order. Pairs of elements that share a vertex are filtered out,
-/// unless kept, with vertices as tags. All files must contain the same mesh, each with an animation
-/// or a single frame. Throws InputError.
+/// unless kept, with vertices as tags. A file with the same topology as another one has the same
+/// bodies, and one that only adds to the file before continues its bodies; another mesh has bodies
+/// of its own. Bodies of other meshes are absent. Throws InputError.
 std::unique_ptr<IndexedFrames> openElements(const std::vector<std::filesystem::path>& files,
                                             const ReadingOptions& options, ImportSummary&);
 

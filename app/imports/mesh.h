@@ -1,4 +1,4 @@
-// Meshes from files: moving vertices, and triangles that do not change.
+// Meshes from files: moving vertices, and triangles and lines that do not change.
 #pragma once
 
 #include <array>
@@ -19,20 +19,37 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// The part of a mesh that does not change. Vertices are numbered as in the file; polygons are
 /// triangulated.
 struct MeshTopology {
+  static constexpr std::uint32_t kMaxVertices = (std::uint32_t{1} << 31) - 1;
+
   std::uint32_t vertices = 0;
   std::vector<Triangle> triangles;
   std::vector<std::array<std::uint32_t, 2>> lines = {};  ///< edges of no face: rods, wires
+  /// Each face has vertices of its own: those at the same position in all frames are one (STL).
+  bool joined_by_position = false;
+
+  /// Adds a polygon as a fan around its first corner, wherever the corners are: it is cut alike in
+  /// every frame.
+  void addPolygon(std::span<const std::uint32_t> corners) {
+    for (std::size_t i = 2; i < corners.size(); ++i) {
+      triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+  }
+
+  friend bool operator==(const MeshTopology&, const MeshTopology&) = default;
 };
 
 /// Receives the vertices of each frame, in order.
 using PointSink = std::function<void(std::span<const Point>)>;
 
 // Readers of mesh files: they read all frames of an animation, or the only frame. The vertices of
-// all triangles exist.
+// all triangles and lines exist. They fill an empty summary. Throw InputError.
 
-/// Reads a Wavefront OBJ file. Does not use assimp, which creates separate vertices for each corner
-/// of a face, so that no two faces would share one. Throws InputError.
+/// Reads a Wavefront OBJ file.
 MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
+/// Reads a PLY file, as text or binary.
+MeshTopology readPly(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
+/// Reads an STL file, as text or binary.
+MeshTopology readStl(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
 
 /// Reads a file with assimp, at `frame_rate` frames per second, in a child process, as damaged
 /// files may crash assimp or exhaust the memory. Throws InputError.

@@ -10,8 +10,8 @@ namespace broadmark::imports {
 
 MeshTopology readWithAssimp(const std::filesystem::path& file, double, const PointSink&,
                             ImportSummary&) {
-  throw InputError(
-      fmt::format("{}: {}: only .obj can be read", file.string(), leftOut(parts::kAssimp)));
+  throw InputError(fmt::format("{}: {}: only .ply, .obj and .stl can be read", file.string(),
+                               leftOut(parts::kAssimp)));
 }
 
 }  // namespace broadmark::imports

@@ -1,15 +1,24 @@
-// Wavefront OBJ: 'v x y z' is a vertex, 'f a b c…' a face. Corners of a face are vertex numbers,
-// counted from 1, or backwards from the last vertex if negative; text after a slash is ignored.
+// Wavefront OBJ: 'v x y z' is a vertex, 'f a b c…' a face, 'l a b…' a line. Corners are vertex
+// numbers, counted from 1, or backwards from the last vertex if negative; text after a slash is
+// ignored.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
 
 #include "broadmark/error.h"
+#include "broadmark/json_fields.h"
 #include "imports/line_reader.h"
 #include "imports/mesh.h"
 
 namespace broadmark::imports {
 namespace {
 
+/// Statements that say nothing about the places of vertices, faces and lines.
+constexpr std::string_view kObjAttributes[] = {
+    "vt",     "vn",     "g",          "s",         "o",     "mg",       "usemtl",   "mtllib",
+    "usemap", "maplib", "shadow_obj", "trace_obj", "bevel", "c_interp", "d_interp", "lod"};
 class ObjReader {
  public:
   explicit ObjReader(const std::filesystem::path& file) : lines_(file) {}
@@ -17,47 +26,77 @@ class ObjReader {
   void read() {
     while (nextLine()) {
       if (words_.empty()) continue;
-      if (words_[0] == "v") addVertex();
-      if (words_[0] == "f") addFace();
+      if (words_[0] == "v") {
+        addVertex();
+      } else if (words_[0] == "f" || words_[0] == "fo") {
+        addFace();
+      } else if (words_[0] == "l") {
+        addLine();
+      } else if (words_[0] == "p") {
+        readVertices(1, "a point element names a vertex or more");  // all vertices are elements
+      } else if (std::ranges::find(kObjAttributes, words_[0]) == std::end(kObjAttributes)) {
+        leaveOut();
+      }
     }
     mesh.vertices = static_cast<std::uint32_t>(points.size());
   }
 
   MeshTopology mesh;
   std::vector<Point> points;
+  std::set<std::string, std::less<>> left_out;
+  bool has_weights = false;  ///< other than 1
 
  private:
-  /// Reads a line with its continuation lines: a backslash at the end continues a line.
+  /// Reads a line with its continuation lines: a backslash at the end continues a line, unless it
+  /// ends a comment.
   bool nextLine() {
+    constexpr std::size_t kMaxLength = 1 << 24;
     if (!lines_.next()) return false;
-    line_ = lines_.line();
-    while (line_.ends_with('\\') && line_.size() < kMaxLineLength && lines_.next()) {
+    line_ = withoutComment(lines_.line());
+    while (line_.ends_with('\\')) {
       line_.back() = ' ';
-      line_ += lines_.line();
+      if (!lines_.next()) lines_.fail("the file ends within a continued line: cut short?");
+      line_ += withoutComment(lines_.line());
+      if (line_.size() > kMaxLength) lines_.fail("is too long with its continuation lines");
     }
     splitWords(line_, words_);
     return true;
   }
+  static std::string_view withoutComment(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    return line.substr(0, line.find_last_not_of(" \t\r") + 1);
+  }
 
   void addVertex() {
-    if (words_.size() < 4) lines_.fail("a vertex has three coordinates");
-    if (points.size() >= kMaxVertices) lines_.fail("more than 2^31 - 1 vertices");
+    // A weight or a colour may follow, or both; a colour may have a transparency.
+    if (words_.size() < 4 || words_.size() > 8) {
+      lines_.fail("a vertex has three coordinates, then a weight or a colour or nothing");
+    }
+    if (points.size() >= MeshTopology::kMaxVertices) lines_.fail("more than 2^31 - 1 vertices");
     Point point;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       point[axis] = static_cast<float>(lines_.realNumber(words_[1 + axis], "a coordinate"));
     }
+    if (words_.size() == 5) has_weights |= lines_.realNumber(words_[4], "a weight") != 1;
     points.push_back(point);
   }
 
   void addFace() {
-    if (words_.size() < 4) lines_.fail("a face has three vertices or more");
-    const std::uint32_t first = vertex(words_[1]);
-    std::uint32_t previous = vertex(words_[2]);
-    for (std::size_t i = 3; i < words_.size(); ++i) {
-      const std::uint32_t next = vertex(words_[i]);
-      mesh.triangles.push_back({first, previous, next});
-      previous = next;
+    readVertices(3, "a face has three vertices or more");
+    mesh.addPolygon(vertices_);
+  }
+
+  void addLine() {
+    readVertices(2, "a line has two vertices or more");
+    for (std::size_t i = 1; i < vertices_.size(); ++i) {
+      mesh.lines.push_back({vertices_[i - 1], vertices_[i]});
     }
+  }
+
+  void readVertices(std::size_t min, std::string_view expected) {
+    if (words_.size() < 1 + min) lines_.fail(expected);
+    vertices_.clear();
+    for (std::size_t i = 1; i < words_.size(); ++i) vertices_.push_back(vertex(words_[i]));
   }
 
   std::uint32_t vertex(std::string_view corner) {
@@ -70,12 +109,21 @@ class ObjReader {
     return static_cast<std::uint32_t>(index);
   }
 
-  static constexpr std::size_t kMaxLineLength = 1 << 20;
-  static constexpr std::size_t kMaxVertices = (std::size_t{1} << 31) - 1;
+  /// Notes a statement that is not used: of a curve or a surface, or unknown. A word that is none
+  /// may be a damaged 'v': to leave it out would shift the numbers of all vertices behind it.
+  void leaveOut() {
+    constexpr std::size_t kMaxNames = 8;
+    if (words_[0].find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") != words_[0].npos) {
+      lines_.fail(fmt::format("'{}' is no statement of OBJ files",
+                              onOneLine(std::string(words_[0].substr(0, 40)))));
+    }
+    if (left_out.size() < kMaxNames) left_out.emplace(words_[0].substr(0, 40));
+  }
 
   LineReader lines_;
   std::string line_;
   std::vector<std::string_view> words_;
+  std::vector<std::uint32_t> vertices_;  ///< of the current statement
 };
 
 }  // namespace
@@ -88,6 +136,10 @@ MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink,
     throw InputError(fmt::format("{}: no vertices: lines 'v x y z' are expected", file.string()));
   }
   summary.format = "Wavefront OBJ";
+  if (reader.has_weights) summary.left_out.emplace_back("weights of vertices");
+  if (!reader.left_out.empty()) {
+    summary.left_out.push_back(fmt::format("statements {}", fmt::join(reader.left_out, ", ")));
+  }
   sink(reader.points);
   return std::move(reader.mesh);
 }

@@ -14,7 +14,7 @@ SourceKind kind() {
   const std::vector<std::string> extensions = {".ply", ".obj", ".stl", ".gltf", ".glb"};
   // Without assimp, its file types are still recognised, to report that it is missing.
   const std::string shown =
-      parts::kAssimp.included ? fmt::format("{}", fmt::join(extensions, ", ")) : ".obj";
+      parts::kAssimp.included ? fmt::format("{}", fmt::join(extensions, ", ")) : ".ply, .obj, .stl";
   return {.what = fmt::format("meshes and animations ({})", shown),
           .import = FileImport{.formats = {"ply", "obj", "stl", "gltf"},
                                .extensions = extensions,

@@ -6,9 +6,9 @@
 namespace broadmark::tests {
 namespace {
 
-using AssimpImport = EndToEnd;
+using MeshImport = EndToEnd;
 
-TEST_F(AssimpImport, PairsOfSweptEdgesAreThoseKnown) {
+TEST_F(MeshImport, PairsOfSweptEdgesAreThoseKnown) {
   // An excerpt of rod-twist: 1,048 of 7,847 pairs share a vertex, as counted with NumPy.
   const std::string frames = (places::source("tests/data") / "rod-twist-*.ply").string();
   const Arguments call = {"--headless",  frames, "--swept", "--elements", "edges",
@@ -32,7 +32,7 @@ TEST_F(AssimpImport, PairsOfSweptEdgesAreThoseKnown) {
   }
 }
 
-TEST_F(AssimpImport, SweptRecordingOfAMeshIsTheSame) {
+TEST_F(MeshImport, SweptRecordingOfAMeshIsTheSame) {
   const std::string frames = (places::source("tests/data") / "rod-twist-*.ply").string();
   EXPECT_EQ(run({"import", frames, "--swept", "--elements", "all", "-o", "rod"}).status, 0);
   runQuietly({"--headless", "rod.broadmark", "--algorithm", "bf", "--json", "r.json"});
