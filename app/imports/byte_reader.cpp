@@ -15,7 +15,7 @@
 namespace broadmark::imports {
 namespace {
 
-constexpr std::size_t kBufferBytes = 1 << 18;
+constexpr std::size_t kBufferBytes = 1 << 16;
 
 bool isBlankByte(int byte) { return byte == ' ' || byte == '\t' || byte == '\v' || byte == '\f'; }
 bool isLineEnd(int byte) { return byte == '\n' || byte == '\r'; }

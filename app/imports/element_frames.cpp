@@ -101,6 +101,8 @@ class ElementFrames final : public IndexedFrames {
     scene_.all_present = std::ranges::all_of(
         meshes_, [&](const MeshBodies& mesh) { return mesh.elements.size() == bodies_; });
     if (meshes_.size() > 1) summary.used.push_back(meshesText());
+    sequence_.forgetFaces();
+    for (MeshBodies& mesh : meshes_) mesh.tags = {};
     boxes_.resize(bodies_);
   }
 
@@ -114,7 +116,7 @@ class ElementFrames final : public IndexedFrames {
   struct MeshBodies {
     std::vector<Element> elements = {};
     std::vector<std::uint32_t> bodies = {};  ///< by element
-    std::vector<std::uint32_t> tags = {};    ///< by vertex
+    std::vector<std::uint32_t> tags = {};    ///< by vertex; freed once the filter is made
   };
 
   void addBodies(const SequenceMesh& mesh) {

@@ -52,7 +52,7 @@ MeshTopology readPly(const std::filesystem::path& file, const PointSink& sink, I
 MeshTopology readStl(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
 
 /// Reads a file with assimp, at `frame_rate` frames per second, in a child process, as damaged
-/// files may crash assimp or exhaust the memory. Throws InputError.
+/// files may crash assimp or exhaust the memory.
 MeshTopology readWithAssimp(const std::filesystem::path& file, double frame_rate,
                             const PointSink& sink, ImportSummary&);
 

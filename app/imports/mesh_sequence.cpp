@@ -99,6 +99,13 @@ std::size_t MeshSequence::addMesh(MeshTopology mesh, const fs::path& file) {
   return meshes_.size() - 1;
 }
 
+void MeshSequence::forgetFaces() {
+  for (SequenceMesh& mesh : meshes_) {
+    mesh.topology.triangles = {};
+    mesh.topology.lines = {};
+  }
+}
+
 void MeshSequence::readPoints(std::uint32_t frame, std::vector<Point>& points) const {
   const auto& [mesh, offset] = frames_[frame];
   points.resize(meshes_[mesh].topology.vertices);

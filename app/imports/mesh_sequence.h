@@ -37,6 +37,8 @@ class MeshSequence {
   /// Index of the mesh of a frame.
   [[nodiscard]] std::size_t meshOf(std::uint32_t frame) const { return frames_[frame].mesh; }
   [[nodiscard]] const Aabb& world() const { return world_; }
+  /// Frees the triangles and lines of all meshes.
+  void forgetFaces();
   /// Reads the vertices of a frame. Throws InputError.
   void readPoints(std::uint32_t frame, std::vector<Point>& points) const;
 

@@ -277,7 +277,7 @@ class PlyReader {
           corners.clear();
         });
     if (too_small == 0) return;
-    summary_.left_out.push_back(fmt::format("{} faces of fewer than three corners", too_small));
+    summary_.left_out.push_back(fmt::format("faces of fewer than three corners: {}", too_small));
   }
 
   void readStrips(PlyElement& element) {

@@ -172,7 +172,7 @@ TEST_F(PlyImports, WhatIsWrongWithPly) {
                       "ply\nformat ascii 1.0\nelement vertex 3000000000\n" + kXyz + "end_header\n"),
               HasSubstr("2^31"));
   EXPECT_THAT(readWith(readPly, plyText(face, "2 0 1\n")).summary.left_out,
-              ElementsAre("1 faces of fewer than three corners"));
+              ElementsAre("faces of fewer than three corners: 1"));
   EXPECT_THAT(readWith(readPly, plyText(face, "3 0 1 2\n9 9\n")).summary.left_out,
               ElementsAre("4 bytes behind the last element"));
 }

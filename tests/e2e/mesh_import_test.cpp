@@ -1,4 +1,5 @@
-// Exact pair counts of real meshes, as used in continuous collision detection.
+// Exact pair counts of real meshes, as used in continuous collision detection, and sequences whose
+// mesh changes.
 
 #include "e2e/end_to_end.h"
 #include "support/places.h"
@@ -40,6 +41,38 @@ TEST_F(MeshImport, SweptRecordingOfAMeshIsTheSame) {
   EXPECT_EQ(result["recording"]["name"], "rod-twist swept");
   EXPECT_EQ(result["recording"]["objects"], 669);
   EXPECT_EQ(result["frame_counts"]["pairs"][0], 29083 - 4168);
+}
+
+TEST_F(MeshImport, EveryAlgorithmFollowsAMeshThatChanges) {
+  // Two triangles that share an edge, cut into four that share none, and joined again.
+  const std::string whole = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  const std::string cut =
+      "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n.5 .5 0\n1 0 0\n1 1 0\n.5 .5 0\n1 1 0\n0 1 0\n.5 .5 0\n0 1 0\n0 0 0\n"
+      ".5 .5 0\n3 0 1 2\n3 3 4 5\n3 6 7 8\n3 9 10 11\n";
+  writeFile(file("m1.obj"), whole);
+  writeFile(file("m2.ply"), cut);
+  writeFile(file("m3.ply"), cut);
+  writeFile(file("m4.obj"), whole);
+  const auto pairs_of = [&](const Arguments& more) {
+    Arguments call = {"--headless", "--algorithm", "all", "--check", "full", "--json", "r.json"};
+    call.insert(call.end(), more.begin(), more.end());
+    runQuietly(call);
+    const Json results = readJson(file("r.json"))["cases"];
+    EXPECT_GT(results.size(), 10U);
+    std::vector<int> pairs;
+    for (const Json& result : results) {
+      EXPECT_EQ(result["status"], "ok") << result["id"];
+      EXPECT_EQ(result["recording"]["objects"], 6);
+      if (result["algorithm"] == "bf") pairs = result["frame_counts"]["pairs"];
+    }
+    return pairs;
+  };
+  EXPECT_EQ(run({"import", "m1.obj", "m2.ply", "m3.ply", "m4.obj", "-o", "m"}).status, 0);
+  EXPECT_THAT(pairs_of({"m.broadmark"}), ElementsAre(6, 6, 0));
+  EXPECT_THAT(pairs_of({"m.broadmark", "--swept"}), ElementsAre(6, 6, 0));
+  EXPECT_THAT(run({"verify", "m.broadmark"}).out, HasSubstr("6 bodies"));
 }
 
 }  // namespace
