@@ -94,6 +94,7 @@ class ElementFrames final : public IndexedFrames {
     scene_.object_type = typeName(which_);
     scene_.world = sequence_.world();
     for (const SequenceMesh& mesh : sequence_.meshes()) addBodies(mesh);
+    if (bodies_ == 0) throw InputError(fmt::format("{}: no vertices", files.front().string()));
     // Vertices never share a vertex.
     if (which_ != "vertices" && options.keep.value == "none") excludeNeighbours();
     scene_.objects = bodies_;
@@ -121,7 +122,8 @@ class ElementFrames final : public IndexedFrames {
 
   void addBodies(const SequenceMesh& mesh) {
     MeshBodies& added = meshes_.emplace_back(MeshBodies{.elements = elementsOf(mesh)});
-    if (added.elements.empty()) {
+    // A mesh without vertices is empty on purpose; one without faces may have lost them.
+    if (added.elements.empty() && mesh.topology.vertices > 0) {
       throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
                                    mesh.file.string(), which_));
     }
@@ -189,7 +191,8 @@ class ElementFrames final : public IndexedFrames {
     for (std::size_t i = 0; i < std::min(meshes_.size(), kMaxShown); ++i) {
       std::vector<std::uint32_t> bodies = meshes_[i].bodies;
       std::ranges::sort(bodies);
-      text += fmt::format("{} bodies {} in frames {}", i == 0 ? ":" : ";", rangesText(bodies),
+      text += fmt::format("{} bodies {} in frames {}", i == 0 ? ":" : ";",
+                          bodies.empty() ? "none" : rangesText(bodies),
                           rangesText(sequence_.meshes()[i].frames));
     }
     if (meshes_.size() > kMaxShown) text += "; …";

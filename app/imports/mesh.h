@@ -42,7 +42,8 @@ struct MeshTopology {
 using PointSink = std::function<void(std::span<const Point>)>;
 
 // Readers of mesh files: they read all frames of an animation, or the only frame. The vertices of
-// all triangles and lines exist. They fill an empty summary. Throw InputError.
+// all triangles and lines exist. They fill an empty summary. A file may
+// state that it has no vertices. Throw InputError.
 
 /// Reads a Wavefront OBJ file.
 MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);

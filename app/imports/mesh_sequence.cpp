@@ -52,7 +52,8 @@ MeshSequence::MeshSequence(const std::vector<fs::path>& files, const ReadingOpti
   for (const fs::path& file : files) readFile(file, options, summary);
 }
 
-void MeshSequence::readFile(const fs::path& file, const ReadingOptions& options, ImportSummary& summary) {
+void MeshSequence::readFile(const fs::path& file, const ReadingOptions& options,
+                            ImportSummary& summary) {
   const std::size_t before = frames_.size();
   const PointSink sink = [&](std::span<const Point> points) { addFrame(points, file); };
   ImportSummary of_file;

@@ -30,7 +30,8 @@ struct SequenceMesh {
 class MeshSequence {
  public:
   /// Reads all files, each with an animation or a single frame. Throws InputError.
-  MeshSequence(const std::vector<std::filesystem::path>& files, const ReadingOptions&, ImportSummary&);
+  MeshSequence(const std::vector<std::filesystem::path>& files, const ReadingOptions&,
+               ImportSummary&);
 
   [[nodiscard]] const std::vector<SequenceMesh>& meshes() const { return meshes_; }
   [[nodiscard]] std::uint32_t frames() const { return static_cast<std::uint32_t>(frames_.size()); }

@@ -104,7 +104,7 @@ class PlyHeaderReader {
 
  private:
   bool nextLine() {
-    constexpr std::size_t kMaxLineLength = 1 << 16;
+    constexpr std::size_t kMaxHeaderLine = 1 << 16;
     line_.clear();
     ++number_;
     for (int byte = bytes_.get(); byte != '\n'; byte = bytes_.get()) {
@@ -113,7 +113,7 @@ class PlyHeaderReader {
         ends_with_return_ = true;
         break;
       }
-      if (line_.size() == kMaxLineLength) fail("is too long: not a PLY file?");
+      if (line_.size() == kMaxHeaderLine) fail("is too long: not a PLY file?");
       line_.push_back(static_cast<char>(byte));
     }
     while (line_.ends_with('\r')) line_.pop_back();
@@ -199,7 +199,7 @@ class PlyReader {
                       : *order_ == std::endian::little ? "binary PLY, little-endian"
                                                        : "binary PLY, big-endian";
     const auto vertex = std::ranges::find(header.elements, "vertex", &PlyElement::name);
-    if (vertex == header.elements.end() || vertex->count == 0) fail("no vertices");
+    if (vertex == header.elements.end()) fail("no element 'vertex'");
     if (vertex->count > MeshTopology::kMaxVertices) fail("more than 2^31 - 1 vertices");
     mesh.vertices = static_cast<std::uint32_t>(vertex->count);
     for (PlyElement& element : header.elements) {

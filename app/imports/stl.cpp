@@ -82,7 +82,6 @@ class StlReader {
       readSolid();
       behind_ = bytes_.offset();
     }
-    if (points.empty()) bytes_.failAtWord("no facets");
     bytes_.seek(behind_);
     while (bytes_.atLineEnd() && bytes_.peek() != ByteReader::kEnd) bytes_.get();
     noteRest("the last solid");
@@ -142,7 +141,9 @@ class StlReader {
       bytes_.fail(size_,
                   fmt::format("the file ends within facet {} of {}: cut short?", room, facets));
     }
-    if (facets == 0) bytes_.fail(kStlHeaderBytes - sizeof(std::uint32_t), "claims no facets");
+    if (facets == 0 && size_ > kStlHeaderBytes) {
+      bytes_.fail(kStlHeaderBytes, "bytes behind the header, which claims no facets");
+    }
     points.reserve(3 * facets);
     bytes_.seek(kStlHeaderBytes);
     for (std::uint64_t facet = 0; facet < facets; ++facet) {

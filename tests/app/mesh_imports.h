@@ -13,7 +13,8 @@ namespace broadmark::tests {
 class MeshImports : public Imports {
  protected:
   MeshContents readWith(MeshReader& reader, const std::string& text) const {
-    // Not written to disk for good, which takes milliseconds.
+    // A new file each time: what replaces another is written to disk, which takes milliseconds.
+    std::filesystem::remove(directory_ / "mesh");
     std::ofstream(directory_ / "mesh", std::ios::binary) << text;
     return meshIn(reader, directory_ / "mesh");
   }

@@ -107,6 +107,22 @@ TEST_F(MeshSequences, AFileThatOnlyAddsToTheOneBeforeContinuesItsBodies) {
   EXPECT_EQ(sequence("s").imported->scene().objects, 5U);
 }
 
+TEST_F(MeshSequences, AFileMayStateThatItIsEmpty) {
+  const std::string full = stlBytes("", 2);
+  write("m/1.stl", stlBytes("", 0));
+  write("m/2.stl", full);
+  write("m/3.stl", "solid\nendsolid\n");
+  write("m/4.stl", full);
+  Source source = sequence("m");
+  IndexedFrames& frames = *source.imported;
+  EXPECT_EQ(frames.scene().objects, 2U);
+  EXPECT_FALSE(frames.scene().all_present);
+  for (const std::uint32_t frame : {3U, 2U, 1U, 0U}) {
+    EXPECT_THAT(bodiesPresentIn(frames, frame), SizeIs(frame % 2 == 0 ? 0 : 2));
+  }
+  EXPECT_THAT(source.summary.used, Contains(HasSubstr("bodies none in frames 0, 2; bodies 0..1")));
+}
+
 TEST_F(MeshSequences, PolygonsThatDeformAreCutAlike) {
   // A concave corner that moves around the square: no diagonal is good in all frames.
   const std::string header =

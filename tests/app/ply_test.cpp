@@ -162,8 +162,11 @@ TEST_F(PlyImports, WhatIsWrongWithPly) {
   EXPECT_THAT(refusal(readPly, "ply\nformat binary_middle_endian 1.0\n"), HasSubstr("big_endian"));
   EXPECT_THAT(refusal(readPly, "ply\nformat ascii 1.0\nelement vertex 1\n"),
               HasSubstr("'end_header' is expected"));
-  EXPECT_THAT(refusal(readPly, "ply\nformat ascii 1.0\nelement vertex 0\n" + kXyz + "end_header\n"),
-              HasSubstr("no vertices"));
+  EXPECT_THAT(
+      complaint("a.ply", "ply\nformat ascii 1.0\nelement vertex 0\n" + kXyz + "end_header\n"),
+      HasSubstr("a.ply: no vertices"));
+  EXPECT_THAT(refusal(readPly, "ply\nformat ascii 1.0\nend_header\n"),
+              HasSubstr("no element 'vertex'"));
   EXPECT_THAT(refusal(readPly,
                       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                       "property float y\nend_header\n1 2\n"),

@@ -71,7 +71,8 @@ TEST_F(StlImports, BytesOfStlAreReadHoweverTheyBegin) {
       EXPECT_THAT(refusal(readStl, plain.substr(0, kept)), HasSubstr(fmt::format("byte {}", kept)));
     }
   }
-  EXPECT_THAT(refusal(readStl, stlBytes("", 0)), HasSubstr("no facets"));
+  EXPECT_THAT(readWith(readStl, stlBytes("", 0)).points, IsEmpty());
+  EXPECT_THAT(refusal(readStl, stlBytes("", 0) + "x"), HasSubstr("no facets"));
 }
 
 TEST_F(StlImports, WhatIsWrongWithTextOfStl) {
@@ -87,7 +88,7 @@ TEST_F(StlImports, WhatIsWrongWithTextOfStl) {
   EXPECT_THAT(wrong(facetText("vertex 0 0 nan\n")), HasSubstr("'nan'"));
   EXPECT_THAT(wrong(facetText("vertex 0 0\nvertex 0 0 1\n")), HasSubstr("'vertex'"));
   EXPECT_THAT(wrong("facet normal 0 0 1 0 0\nouter loop\n"), HasSubstr("'outer loop'"));
-  EXPECT_THAT(refusal(readStl, "solid s\nendsolid s\n"), HasSubstr("no facets"));
+  EXPECT_THAT(complaint("a.stl", "solid s\nendsolid s\n"), HasSubstr("a.stl: no vertices"));
 }
 
 TEST_F(StlImports, CornersOfStlAreJoined) {

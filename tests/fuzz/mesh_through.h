@@ -23,7 +23,7 @@ inline void meshThrough(MeshReader& reader, const std::uint8_t* data, std::size_
     const auto all_exist = [&](const auto& vertices) {
       return std::ranges::all_of(vertices, exists);
     };
-    if (points == 0 || mesh.vertices != points || summary.format.empty()) std::abort();
+    if (mesh.vertices != points || summary.format.empty()) std::abort();
     if (!std::ranges::all_of(mesh.triangles, all_exist)) std::abort();
     if (!std::ranges::all_of(mesh.lines, all_exist)) std::abort();
   });
