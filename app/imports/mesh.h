@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "imports/import_summary.h"
+#include "request/reading_options.h"
 
 namespace broadmark::imports {
 
@@ -51,6 +52,14 @@ MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink, I
 MeshTopology readPly(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
 /// Reads an STL file, as text or binary.
 MeshTopology readStl(const std::filesystem::path& file, const PointSink& sink, ImportSummary&);
+
+/// Reads a glTF 2.0 file, as text or binary: the meshes of its default scene, moved by its
+/// animations. Vertices are those that a primitive uses, in the order of nodes, primitives and
+/// accessors. `spare_bytes`: memory that the file may take beyond what its size explains. Throws
+/// InputError.
+MeshTopology readGltf(const std::filesystem::path& file, const ReadingOptions& options,
+                      const PointSink& sink, ImportSummary&,
+                      std::uint64_t spare_bytes = std::uint64_t{4} << 30);
 
 /// Reads a file with assimp, at `frame_rate` frames per second, in a child process, as damaged
 /// files may crash assimp or exhaust the memory.

@@ -38,6 +38,11 @@ bool extends(const MeshTopology& mesh, const MeshTopology& known) {
 MeshTopology readMesh(const fs::path& file, const ReadingOptions& options, const PointSink& sink,
                       ImportSummary& summary) {
   const std::string format = meshFormat(file, options.format.value);
+  if (format == "gltf") return readGltf(file, options, sink, summary);
+  if (!options.animation.empty()) {
+    throw InputError(fmt::format(
+        "{}: --animation: only glTF files name animations: omit the option", file.string()));
+  }
   if (format == "obj") return readObj(file, sink, summary);
   if (format == "ply") return readPly(file, sink, summary);
   if (format == "stl") return readStl(file, sink, summary);

@@ -16,6 +16,7 @@ struct ReadingOptions : Parametrised {
   Choice keep{"none", {"none", "shared-vertices"}};
   double radius = 0;
   double frame_rate = 30;
+  std::string animation;
 
   void visitParameters(const ParameterVisitor& visit) override {
     constexpr double kMaxRadius = 1e30;
@@ -31,6 +32,8 @@ struct ReadingOptions : Parametrised {
     visit({"keep", "meshes: also report pairs of elements that share a vertex", &keep});
     visit({"radius", "particles: radius; 0: as stated in the file", &radius, 0, kMaxRadius});
     visit({"frame_rate", "animations: frames per second", &frame_rate, 1e-6, kMaxRate});
+    visit({"animation", "glTF: name or number of the only animation to play; empty: all at once",
+           &animation});
   }
 
   /// Options that are not at their defaults.

@@ -18,7 +18,7 @@ SourceKind kind() {
   return {.what = fmt::format("meshes and animations ({})", shown),
           .import = FileImport{.formats = {"ply", "obj", "stl", "gltf"},
                                .extensions = extensions,
-                               .options = {"elements", "keep", "frame_rate"},
+                               .options = {"elements", "keep", "frame_rate", "animation"},
                                .recognises =
                                    [](const imports::FileStart& start) {
                                      return !imports::meshFormat(start).empty();

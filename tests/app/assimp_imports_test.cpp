@@ -11,7 +11,6 @@
 namespace broadmark::tests {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 using AssimpImports = Imports;
