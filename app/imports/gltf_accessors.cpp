@@ -247,7 +247,8 @@ void Document::readSparse(const JsonFields& sparse, Accessor& accessor) {
   list.component_type_ = static_cast<int>(type);
   const auto* bytes = reinterpret_cast<const std::byte*>(index_bytes.data());
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto index = static_cast<std::uint32_t>(list.component(bytes + i * index_size));
+    const auto index =
+        static_cast<std::uint32_t>(list.component(bytes + std::size_t{i} * index_size));
     if (index >= accessor.count) {
       fail(indices, fmt::format("index {} of {} elements", index, accessor.count));
     }

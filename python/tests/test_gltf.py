@@ -25,7 +25,7 @@ class Scene:
         self.random = np.random.default_rng(seed)
         self.bytes = bytearray()
         self.json: dict[str, Any] = {"asset": {"version": "2.0"}}
-        self.curves: dict[tuple[int, str], Any] = {}  # by node and path: a function of time
+        self.curves: dict[tuple[int, str], tuple[str, Any, Any, bool]] = {}  # by node and path
         self.copies: dict[int, Any] = {}  # by node: translations of instances
         self.meshes = [self.mesh() for _ in range(2)]
         self.parents = [int(self.random.integers(-1, i)) for i in range(7)]
@@ -230,7 +230,7 @@ class Scene:
     # ---- What is to be read.
 
     def boxes(self, time: float) -> Any:
-        state = []
+        state: list[Any] = []
         for index, node in enumerate(self.json["nodes"]):
             at = {
                 path: value_at(*curve, time)
