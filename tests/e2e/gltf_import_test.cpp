@@ -63,10 +63,10 @@ TEST_F(GltfImport, BuffersLieBesideTheFile) {
   fs::create_directory(file("sub"));
   writeFile(file("sub/my buf.bin"), std::string(76, 'A'));
   writeFile(file("sub/a.gltf"), whole.dump());
-  EXPECT_EQ(run({"import", "sub/a.gltf", "-o", "a.aabbs"}).status, 0);
-  EXPECT_THAT(run({"verify", "a.aabbs"}).out, HasSubstr("2 bodies"));
+  EXPECT_EQ(run({"import", "sub/a.gltf", "-o", "a.broadmark"}).status, 0);
+  EXPECT_THAT(run({"verify", "a.broadmark"}).out, HasSubstr("2 bodies"));
   writeFile(file("sub/my buf.bin"), std::string(75, 'A'));
-  expectRefusal({"import", "sub/a.gltf", "-o", "b.aabbs"},
+  expectRefusal({"import", "sub/a.gltf", "-o", "b.broadmark"},
                 {"sub/a.gltf: buffers[0]: 76 bytes are stated, but there are 75"});
 }
 
