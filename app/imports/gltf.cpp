@@ -16,6 +16,7 @@
 #include "imports/gltf_document.h"
 #include "imports/gltf_mesh.h"
 #include "imports/mesh.h"
+#include "support/interrupt.h"
 #include "support/words.h"
 
 namespace broadmark::imports {
@@ -96,13 +97,14 @@ class Scene {
     for (const auto& [driven, sampler] : animated_) end = std::max(end, sampler->end());
     constexpr double kTolerance = 0x1p-22;  // the times of keys are rounded to 32-bit floats
     const double frames = end * options_.frame_rate * (1 + kTolerance);
-    constexpr double kMaxPoints = 0x1p35;
-    if (!(frames < kMaxFrames) || frames * topology.vertices > kMaxPoints) {
-      fail(
-          document_.root(),
-          fmt::format("its animation has {:.0f} frames of {} vertices: at most {} frames, and {:g} "
-                      "vertices in all, are read: choose a lower --frame-rate",
-                      std::floor(frames), topology.vertices, kMaxFrames, kMaxPoints));
+    constexpr double kMaxPlaces = 0x1p33;
+    const double places = frames * (static_cast<double>(nodes_.size()) + topology.vertices);
+    if (!(frames < kMaxFrames) || places > kMaxPlaces) {
+      fail(document_.root(),
+           fmt::format("{:.0f} frames of {} nodes and {} vertices: at most {} frames, and {:g} "
+                       "nodes and vertices in all of them, are read: choose a lower --frame-rate",
+                       std::floor(frames), nodes_.size(), topology.vertices, kMaxFrames,
+                       kMaxPlaces));
     }
     return static_cast<std::uint64_t>(frames) + 1;
   }
@@ -461,7 +463,10 @@ MeshTopology readGltf(const std::filesystem::path& file, const ReadingOptions& o
                       const PointSink& sink, ImportSummary& summary, std::uint64_t spare_bytes) {
   gltf::Scene scene(file, options, summary, spare_bytes);
   const std::uint64_t frames = scene.frames();
-  for (std::uint64_t frame = 0; frame < frames; ++frame) sink(scene.points(frame));
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    if (InterruptGuard::requested()) throw Interrupted();
+    sink(scene.points(frame));
+  }
   return std::move(scene.topology);
 }
 
