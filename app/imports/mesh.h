@@ -61,9 +61,4 @@ MeshTopology readGltf(const std::filesystem::path& file, const ReadingOptions& o
                       const PointSink& sink, ImportSummary&,
                       std::uint64_t spare_bytes = std::uint64_t{4} << 30);
 
-/// Reads a file with assimp, at `frame_rate` frames per second, in a child process, as damaged
-/// files may crash assimp or exhaust the memory.
-MeshTopology readWithAssimp(const std::filesystem::path& file, double frame_rate,
-                            const PointSink& sink, ImportSummary&);
-
 }  // namespace broadmark::imports

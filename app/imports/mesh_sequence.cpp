@@ -46,7 +46,7 @@ MeshTopology readMesh(const fs::path& file, const ReadingOptions& options, const
   if (format == "obj") return readObj(file, sink, summary);
   if (format == "ply") return readPly(file, sink, summary);
   if (format == "stl") return readStl(file, sink, summary);
-  return readWithAssimp(file, options.frame_rate, sink, summary);
+  throw InputError(fmt::format("{}: no mesh: PLY, OBJ, STL and glTF are read", file.string()));
 }
 
 }  // namespace

@@ -5,17 +5,13 @@
 
 #include "imports/element_frames.h"
 #include "imports/mesh_format.h"
-#include "parts.h"
 #include "sources/source.h"
 
 namespace broadmark::sources::meshes {
 
 SourceKind kind() {
   const std::vector<std::string> extensions = {".ply", ".obj", ".stl", ".gltf", ".glb"};
-  // Without assimp, its file types are still recognised, to report that it is missing.
-  const std::string shown =
-      parts::kAssimp.included ? fmt::format("{}", fmt::join(extensions, ", ")) : ".ply, .obj, .stl";
-  return {.what = fmt::format("meshes and animations ({})", shown),
+  return {.what = fmt::format("meshes and animations ({})", fmt::join(extensions, ", ")),
           .import = FileImport{.formats = {"ply", "obj", "stl", "gltf"},
                                .extensions = extensions,
                                .options = {"elements", "keep", "frame_rate", "animation"},

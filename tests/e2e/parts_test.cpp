@@ -26,7 +26,6 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
       {parts::kBoost, {"list"}, {"boost-rtree: "}},
       {parts::kEmbree, {"list"}, {"embree-morton: "}},
       {parts::kFcl, {"list"}, {"fcl: "}},
-      {parts::kAssimp, {"import", "--help"}, {".gltf", ".glb"}},
       {parts::kOde, {"list"}, {"  ode: ", "ode-hash: "}}};
   for (const Shown& shown : all) {
     const ProgramResult ended = run(shown.call);
@@ -61,7 +60,6 @@ TEST_F(Parts, AreRefusedWhereTheyAreLeftOut) {
       {parts::kBoost, with("--algorithm", "boost-rtree"), "'boost-rtree'"},
       {parts::kEmbree, with("--algorithm", "embree-sah"), "'embree-sah'"},
       {parts::kFcl, with("--algorithm", "fcl"), "'fcl'"},
-      {parts::kAssimp, {"--headless", "a.gltf"}, "BROADMARK_ASSIMP"},
       {parts::kOde, with("--engine", "ode"), "'ode'"},
       {parts::kOde, with("--algorithm", "ode-sap"), "'ode-sap'"}};
   for (const Refused& refused : all) {
