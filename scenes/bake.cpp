@@ -103,6 +103,22 @@ std::vector<RecorderListing> builtinRecorders() {
            "Recordings_PositionRotation"}};
 }
 
+std::vector<std::string> escapeTexts(const Simulation& simulation) {
+  constexpr std::size_t kMaxLines = 20;
+  const std::span<const Escape> escapes = simulation.escapes();
+  const std::size_t shown = std::min(escapes.size(), kMaxLines);
+  std::vector<std::string> lines;
+  for (const Escape& escape : escapes.first(shown)) {
+    lines.push_back(
+        fmt::format("body {} left its world for good in frame {}", escape.body, escape.frame));
+  }
+  if (shown < escapes.size()) {
+    lines.push_back(fmt::format("{} more bodies left it, the last in frame {}",
+                                escapes.size() - shown, escapes.back().frame));
+  }
+  return lines;
+}
+
 bool isBaked(const fs::path& path, Simulation& simulation) {
   const Sidecar sidecar = sidecarOf(path);
   try {

@@ -108,6 +108,7 @@ const SceneInfo& PhysicsSimulation::scene() const {
 
 Frame PhysicsSimulation::rewind() {
   info_ = describe();
+  escapes_.clear();
   bodies_.reset();
   makeEngine();
   bodies_.emplace(*engine_, info_);
@@ -199,7 +200,9 @@ void PhysicsSimulation::freezeEscapees() {
   for (const std::uint32_t id : bodies_->inEngine()) {
     PhysicsBody* body = (*bodies_)[id];
     if (body == nullptr || body->frozen()) continue;
-    if (!contains(info_.world, boxAround(body->pose().position, {}))) body->freeze();
+    if (contains(info_.world, boxAround(body->pose().position, {}))) continue;
+    body->freeze();
+    escapes_.push_back({id, index_});
   }
 }
 

@@ -40,6 +40,7 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   std::span<const Aabb> unrotatedBoxes() override;
   std::span<const Pose> poses() override { return bodies_->poses(); }
   [[nodiscard]] AuthoredScene authoredScene() override;
+  [[nodiscard]] std::span<const Escape> escapes() const override { return escapes_; }
 
  protected:
   /// The scene for the current parameters.
@@ -68,6 +69,7 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   std::unique_ptr<PhysicsEngine> engine_;
   std::optional<Bodies> bodies_;
   std::vector<Aabb> unrotated_;
+  std::vector<Escape> escapes_;
   std::uint32_t index_ = 0;
 };
 

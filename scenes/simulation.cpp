@@ -25,12 +25,44 @@ class BuiltinSimulation final : public PhysicsSimulation {
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    settings_.visit(visit);
+    settings_.visit([&](const Parameter& parameter) {
+      const std::string engine = settings_.engine.value;
+      visit(parameter);
+      if (settings_.engine.value != engine) adaptDefaults(engine);
+    });
     scene_->visitParameters(visit);
     engine_parameters_.parameters(settings_.engine.value, settings_.physics).visitParameters(visit);
   }
 
  private:
+  /// The scene's defaults for an engine.
+  [[nodiscard]] Settings defaultsFor(const std::string& engine) const {
+    Settings defaults;
+    defaults.engine.value = engine;
+    scene_->setDefaults(defaults);
+    return defaults;
+  }
+
+  /// Gives all settings still at their defaults for the `former` engine those for the current one.
+  void adaptDefaults(const std::string& former) {
+    const auto parametersOf = [](Settings& settings) {
+      std::vector<Parameter> parameters;
+      settings.visit([&](const Parameter& parameter) { parameters.push_back(parameter); });
+      return parameters;
+    };
+    Settings before = defaultsFor(former);
+    Settings after = defaultsFor(settings_.engine.value);
+    const std::vector<Parameter> old_defaults = parametersOf(before);
+    const std::vector<Parameter> new_defaults = parametersOf(after);
+    const std::vector<Parameter> current = parametersOf(settings_);
+    for (std::size_t i = 0; i < current.size(); ++i) {
+      const std::string fresh = parameterText(new_defaults[i]);
+      const std::string stale = parameterText(old_defaults[i]);
+      if (current[i].name == "engine" || fresh == stale) continue;
+      if (parameterText(current[i]) == stale) setParameter(current[i], fresh);
+    }
+  }
+
   [[nodiscard]] ObjectType objectType() const {
     return entryOf(objectTypes(), settings_.object_type.value, "object type");
   }

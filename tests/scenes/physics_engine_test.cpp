@@ -456,6 +456,47 @@ TEST(KinematicEngine, TurningBodiesKeepTheirTightBoxInside) {
   }
 }
 
+/// A cube of walls with this edge, around the origin.
+void addRoom(PhysicsEngine& engine, float edge) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0F, 1.0F}) {
+      HalfSpace wall{.offset = -edge / 2};
+      wall.normal[axis] = sign;
+      engine.addWall(wall);
+    }
+  }
+}
+
+TEST(KinematicEngine, WithoutLossBodiesReflectAtTheWallsAtAnySpeed) {
+  // Ten times through the room in a substep, as the centre moves: a triangle wave.
+  for (const float speed : {0.001F, 0.3F, 7.0F, 500.0F, 3300.0F}) {
+    auto engine = kinematicEngine({.substeps = 1, .friction = 0, .restitution = 1});
+    addRoom(*engine, 11);
+    PhysicsBody& body = engine->addBody({.shape = kUnitCube, .linear_velocity = {speed, 0, speed}});
+    const double time = PhysicsSettings().time_step;
+    for (int i = 1; i <= 200; ++i) {
+      engine->step();
+      const double way = std::fmod(speed * time * i + 5, 20);
+      const double expected = way < 10 ? way - 5 : 15 - way;
+      ASSERT_NEAR(body.pose().position[0], expected, 1e-4 + 1e-5 * speed * i) << speed << " " << i;
+      ASSERT_EQ(body.pose().position[0], body.pose().position[2]);
+      ASSERT_EQ(body.pose().position[1], 0);
+    }
+    EXPECT_FALSE(body.asleep());
+    EXPECT_FLOAT_EQ(std::abs(body.linearVelocity()[0]), speed);
+  }
+}
+
+TEST(KinematicEngine, ABodyLargerThanTheRoomStaysThere) {
+  auto engine = kinematicEngine({.friction = 0, .restitution = 1});
+  addRoom(*engine, 2);
+  PhysicsBody& body =
+      engine->addBody({.shape = BoxShape{{3, 0.5F, 0.5F}}, .linear_velocity = {5, 1, 0}});
+  for (int i = 0; i < 50; ++i) engine->step();
+  EXPECT_LE(std::abs(body.pose().position[0]), 2);
+  EXPECT_LE(std::abs(body.pose().position[1]), 0.5F);
+}
+
 const auto id_of_engine = [](const auto& param) { return param.param.listing.id; };
 INSTANTIATE_TEST_SUITE_P(All, PhysicsEngineTest,
                          testing::ValuesIn(enginesWith({Dynamics::rigid, Dynamics::passing})),

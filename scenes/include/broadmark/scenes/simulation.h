@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -61,6 +62,12 @@ std::vector<RecorderListing> builtinRecorders();
 /// replace them. Throws InputError for an unknown id.
 std::unique_ptr<Parametrised> engineParameters(const std::string& id);
 
+/// A body that left its world for good, and stays where it was seen first outside.
+struct Escape {
+  std::uint32_t body = 0;
+  std::uint32_t frame = 0;
+};
+
 /// A live physics simulation, frame by frame. Its parameters (objects, frames, seed, density,
 /// object_type, engine, …, the scene's own, and those of the chosen engine) take effect at the next
 /// rewind(), which restarts the simulation. Same parameters, same frames, bit for bit.
@@ -75,10 +82,15 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
   [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
   /// The hash of the input besides the parameters; "": none. Throws InputError.
   [[nodiscard]] virtual std::string inputHash() { return {}; }
+  /// The bodies that escaped up to the latest frame, in order.
+  [[nodiscard]] virtual std::span<const Escape> escapes() const { return {}; }
 
  private:
   SceneListing listing_;
 };
+
+/// A line for each escape: "body 17 left its world for good in frame 4"; of many, the first ones.
+std::vector<std::string> escapeTexts(const Simulation&);
 
 /// Creates the simulation of a built-in scene with default parameters. `scene` is its id or its
 /// name in recordings, case-insensitive; `engine` an engine's id ("": the scene's default). Throws
