@@ -149,12 +149,13 @@ class Batch {
     } catch (const std::bad_alloc&) {
       failure = queued.job.paths.front().string() + ": out of memory";
     }
+    std::vector<std::string> escapes = escapeTexts(*queued.job.simulation);
     queued.job.simulation.reset();
     const std::lock_guard lock(mutex_);
     const bool finished = is_complete || !failure.empty();
     queued.phase = finished ? QueuedJob::Phase::finished : QueuedJob::Phase::stopped;
     queued.end = Clock::now();
-    if (finished) finished_.push_back({queued.job.paths, std::move(failure)});
+    if (finished) finished_.push_back({queued.job.paths, std::move(failure), std::move(escapes)});
     changed_.notify_all();
   }
 

@@ -27,7 +27,8 @@ struct BakeJob {
 /// A finished job.
 struct BakedJob {
   std::vector<std::filesystem::path> paths;
-  std::string failure;  ///< error message; "": success
+  std::string failure;                    ///< error message; "": success
+  std::vector<std::string> escapes = {};  ///< escapeTexts()
 };
 
 /// The progress of a batch.

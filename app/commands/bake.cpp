@@ -103,6 +103,9 @@ std::vector<fs::path> executePlan(BakePlan plan, const Options& options, Tally& 
       progress.printError("broadmark: " + job.failure);
       return;
     }
+    for (const std::string& line : job.escapes) {
+      progress.printError(fmt::format("{}: {}", job.paths.front().string(), line));
+    }
     for (const fs::path& path : job.paths) {
       ++tally.baked;
       tally.bytes += fs::file_size(path);

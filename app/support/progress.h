@@ -23,6 +23,8 @@ class TaskObserver {
   virtual void onTaskStart(const std::string& task, std::uint64_t steps) = 0;
   /// Called when `done` steps of the task are done; `detail` names the current one.
   virtual void onProgress(std::uint64_t done, const std::string& detail = {}) = 0;
+  /// Called with a line for the user about the current task.
+  virtual void onNote(const std::string& /*line*/) {}
 };
 
 /// Shows the progress of a task on standard error: on a terminal as a single line, truncated to the
@@ -83,6 +85,7 @@ class TerminalTasks : public Observer {
     progress_->detail(detail);
     progress_->update(done);
   }
+  void onNote(const std::string& line) override { progress_->printError(line); }
   /// Ends the current task.
   void end() { progress_.reset(); }
 

@@ -288,5 +288,20 @@ TEST_F(Bake, VerifyNamesEveryBrokenFileAndPassesTheRest) {
   EXPECT_THAT(complaints[1], HasSubstr("missing.aabbs"));
 }
 
+TEST_F(Bake, TellsWhichBodiesLeftTheirWorldAndWhen) {
+  // Steps of half a second are too long for walls.
+  const ProgramResult baked =
+      run({"bake", "--scenes", "brownian", "--objects", "40", "--frames", "20", "--output", "out",
+           "--param", "initial_speed=10", "--param", "substeps=1", "--param", "time_step=0.5"});
+  EXPECT_EQ(baked.status, 0);
+  EXPECT_THAT(baked.err,
+              testing::ContainsRegex("Brownian Cubes N40 F20frames.aabbs: body [0-9]+ left its "
+                                     "world for good in frame [0-9]+\n"));
+  EXPECT_THAT(run({"bake", "--scenes", "brownian", "--objects", "40", "--frames", "20", "--output",
+                   "in", "--engine", "kinematic", "--param", "initial_speed=10"})
+                  .err,
+              Not(HasSubstr("left its world")));
+}
+
 }  // namespace
 }  // namespace broadmark::tests
