@@ -301,6 +301,7 @@ std::vector<Algorithm> variants() {
            .summary = "Bullet's incremental sweep and prune on three axes",
            .traits = {.incremental = true,
                       .events = true,
+                      .library_aborts = true,
                       .changing_worlds = ChangingWorlds::native,
                       .instance_per_world = true,
                       .max_objects = kMaxObjects},

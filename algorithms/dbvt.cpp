@@ -255,6 +255,7 @@ std::vector<Algorithm> variants() {
       .traits = {.incremental = true,
                  .events = true,
                  .library_allocates = true,
+                 .library_aborts = true,
                  .changing_worlds = ChangingWorlds::native,
                  .instance_per_world = true,
                  .max_objects = 0x7FFF'FFFE,

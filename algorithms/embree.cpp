@@ -33,6 +33,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 #include "broadmark/algorithm.h"
@@ -83,6 +84,7 @@ class Threads final : public SharedResource {
       work();
       error = rtcGetDeviceError(device());  // of this thread
     });
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE) {
       throw std::runtime_error(fmt::format("Embree: error {}", static_cast<int>(error)));
     }

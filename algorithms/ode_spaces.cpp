@@ -160,6 +160,7 @@ class Sap final : public OdeSpace {
 std::vector<Algorithm> variants() {
   const Algorithm family = {.family = "ODE",
                             .traits = {.library_allocates = true,
+                                       .library_aborts = true,
                                        .changing_worlds = ChangingWorlds::compacted,
                                        .instance_per_world = true}};
   Algorithm hash =

@@ -1,12 +1,14 @@
 // Python bindings of the algorithms: boxes in, overlapping pairs out. The package's overlaps()
 // validates the arguments. Boxes are copied into the algorithms' padded layout, and pairs from the
-// per-thread runs of the algorithm.
+// per-thread runs of the algorithm. Algorithms that might end the interpreter run in a worker
+// process.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -20,6 +22,8 @@
 #include "broadmark/error.h"
 #include "broadmark/execution.h"
 #include "broadmark/harness/case_run.h"
+#include "broadmark/harness/memory_limit.h"
+#include "broadmark/harness/worker_process.h"
 
 namespace py = pybind11;
 
@@ -78,17 +82,49 @@ std::vector<Pair> overlapping(PairRuns runs, const std::vector<Aabb>& boxes, boo
   return pairs;
 }
 
-std::vector<Pair> findPairs(std::span<const float> numbers, const Case& test_case) {
+/// Whether the user has pressed Ctrl-C, or another signal's handler raises an exception, which is
+/// then Python's current one.
+bool isInterrupted() {
+  const py::gil_scoped_acquire acquire;
+  return PyErr_CheckSignals() != 0;
+}
+
+/// Runs the case in this process, unless its library might end that.
+ExecutorFactory executorsFor(const Algorithm& algorithm, const std::string& program) {
+  if (!algorithm.traits.library_aborts) return makeInProcessExecutor;
+  return [program](const Case& test_case, CancelQuery cancelled) {
+    return makeWorkerProcess(test_case, {.command = {program, "worker"},
+                                         .hard_limit = std::chrono::years(100),
+                                         .memory_limit_bytes = machineMemory(),
+                                         .cancelled = std::move(cancelled)});
+  };
+}
+
+std::string failureOf(const CaseRun& case_run, const Algorithm& algorithm) {
+  std::string text = algorithm.id + ": " + case_run.reason();
+  if (algorithm.traits.library_aborts && case_run.status() == Status::error) {
+    text += "; its library ends its process when memory ends";
+  }
+  return text;
+}
+
+std::vector<Pair> findPairs(std::span<const float> numbers, const Case& test_case,
+                            const std::string& program) {
   const std::vector<Aabb> boxes = copied(numbers);
-  CaseRun case_run(test_case, RunPolicy::unlimited(CheckMode::off));
+  CaseRun case_run(test_case, RunPolicy::unlimited(CheckMode::off),
+                   executorsFor(test_case.algorithm, program), isInterrupted);
   // Algorithms expect a frame after the initial pose.
   if (case_run.start(sceneOf(boxes), {.index = 0, .boxes = boxes})) {
     case_run.step({.index = 1, .boxes = boxes});
   }
   if (case_run.status() != Status::ok) {
-    throw InputError(test_case.algorithm.id + ": " + case_run.reason());
+    throw InputError(failureOf(case_run, test_case.algorithm));
   }
-  return overlapping(case_run.answer(), boxes, case_run.margin() == 0);
+  std::vector<Pair> pairs = overlapping(case_run.answer(), boxes, case_run.margin() == 0);
+  if (case_run.status() != Status::ok) {  // the answer of a worker process comes later
+    throw InputError(failureOf(case_run, test_case.algorithm));
+  }
+  return pairs;
 }
 
 /// The array takes ownership of the pairs.
@@ -116,14 +152,17 @@ ParameterValues withCurrentNames(const ParameterValues& parameters) {
 }
 
 Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
-                 const std::string& isa, const ParameterValues& parameters) {
+                 const std::string& isa, const ParameterValues& parameters,
+                 const std::string& program) {
   const Case test_case =
       makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", withCurrentNames(parameters));
   const std::span<const float> numbers(boxes.data(), static_cast<std::size_t>(boxes.size()));
   std::vector<Pair> pairs;
-  {
+  try {
     const py::gil_scoped_release release;
-    pairs = findPairs(numbers, test_case);
+    pairs = findPairs(numbers, test_case, program);
+  } catch (const Cancelled&) {
+    throw py::error_already_set();
   }
   return asArray(std::move(pairs));
 }
@@ -135,7 +174,7 @@ PYBIND11_MODULE(_native, module) {
   // The package converts it to its own InputError.
   py::register_local_exception<broadmark::InputError>(module, "NativeInputError", PyExc_ValueError);
   module.def("overlaps", &broadmark::overlapsOf, py::arg("boxes").noconvert(), py::arg("algorithm"),
-             py::arg("threads"), py::arg("isa"), py::arg("parameters"));
+             py::arg("threads"), py::arg("isa"), py::arg("parameters"), py::arg("program"));
   module.def("algorithms", [] {
     std::vector<std::string> ids;
     for (const broadmark::Algorithm& algorithm : broadmark::builtinAlgorithms()) {

@@ -1,4 +1,4 @@
-"""Algorithms as functions in this process: boxes in, overlapping pairs out."""
+"""Algorithms as functions: boxes in, overlapping pairs out."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ def overlaps(
 
     `boxes` is an array (n, 2, 3) or (n, 6): min x y z, max x y z; 32-bit floats are not converted.
     Touching boxes overlap. The order of the pairs depends on the algorithm. Only parallel algorithms
-    use `threads` (default: all cores). The call releases the GIL.
+    use `threads` (default: all cores). The call releases the GIL. Algorithms of libraries that end
+    the process when memory ends (Bullet, ODE) run in a process of their own; all others in this one.
 
-    Raises InputError for other shapes, NaN, inverted boxes and unknown names.
+    Raises InputError for other shapes, NaN, inverted boxes and unknown names, and when memory ends.
     """
     native = _native()
     if algorithm not in native.algorithms():
@@ -44,7 +45,7 @@ def overlaps(
     texts = {name: str(value) for name, value in (parameters or {}).items()}
     try:
         pairs: npt.NDArray[np.uint32] = native.overlaps(
-            np.ascontiguousarray(as_boxes(boxes)), algorithm, threads, isa, texts
+            np.ascontiguousarray(as_boxes(boxes)), algorithm, threads, isa, texts, find_program()
         )
     except native.NativeInputError as error:
         raise InputError(str(error)) from None

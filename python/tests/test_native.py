@@ -85,6 +85,37 @@ def test_former_parameter_names_are_accepted_with_a_warning() -> None:
     assert pairs.tolist() == [[0, 1]]
 
 
+# The pairs of all these boxes would take gigabytes.
+MEMORY_ENDS = """
+import re, resource, sys
+sys.path.insert(0, {package!r})
+import numpy, broadmark
+boxes = numpy.zeros((30_000, 2, 3), numpy.float32)
+broadmark.overlaps(boxes[:9], {algorithm!r}, threads=1)
+used = int(re.search(r"VmData:\\s*(\\d+)", open("/proc/self/status").read())[1]) * 1024
+hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+resource.setrlimit(resource.RLIMIT_DATA, (used + (512 << 20), hard))
+try:
+    broadmark.overlaps(boxes, {algorithm!r}, threads=1)
+except broadmark.InputError as error:
+    print(error)
+assert broadmark.overlaps(boxes[:3], {algorithm!r}, threads=1).shape == (3, 2)
+"""
+
+
+@pytest.mark.parametrize("algorithm", ["axis-sweep", "dbvt-f", "dbvt-d", "ode-hash", "sap", "kd"])
+def test_the_interpreter_survives_the_end_of_memory(algorithm: str) -> None:
+    if algorithm not in _native().algorithms():
+        pytest.skip(f"no {algorithm} in this build")
+    code = MEMORY_ENDS.format(package=str(SOURCE_FOLDER / "python"), algorithm=algorithm)
+    ended = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert ended.stdout.startswith(f"{algorithm}: "), ended.stdout
+    assert "memory" in ended.stdout
+
+
 def test_the_gil_is_released() -> None:
     code = OTHER_THREADS.format(package=str(SOURCE_FOLDER / "python"))
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -35,6 +35,8 @@ struct AlgorithmTraits {
   bool library_allocates = false;
   /// A library called by the algorithm leaks memory for every instance.
   bool library_leaks = false;
+  /// A library called by the algorithm ends the process when memory ends, instead of reporting it.
+  bool library_aborts = false;
   /// Treatment of absent bodies and of unwanted pairs.
   ChangingWorlds changing_worlds = ChangingWorlds::unknown;
   /// Each of several worlds at the same place has its own instance, however small: for algorithms
