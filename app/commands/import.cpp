@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "broadmark/error.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "broadmark/recordings/recording.h"
-#include "broadmark/recordings/swept_frames.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
 #include "run/recordings.h"
@@ -44,8 +44,8 @@ int run(const Options& options) {
   }
   Source source = fileSource(options.inputs, options.reading);
   const std::string text = importText(source);
-  std::unique_ptr<IndexedFrames> frames = std::move(source.imported);
-  if (options.reading.swept) frames = std::make_unique<SweptFrames>(std::move(frames));
+  const std::unique_ptr<IndexedFrames> frames =
+      adapted(std::move(source.imported), source.reference.reading);
   const SceneInfo& scene = frames->scene();
   const fs::path path = outputFor(scene, options.output);
   RecordingWriter writer(path, scene, {.source = source.reference.path, .import = text});

@@ -10,8 +10,8 @@
 
 #include "broadmark/analysis/scene_statistics.h"
 #include "broadmark/error.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "broadmark/recordings/recording.h"
-#include "broadmark/recordings/swept_frames.h"
 #include "broadmark/scenes/simulation.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
@@ -156,7 +156,7 @@ std::optional<DescribedRecording> verifyRecording(const fs::path& file, const Op
                                       [&](std::uint32_t frame) { return progress.advance(frame); });
   if (!description) return std::nullopt;
   std::optional<std::string> stated = bakedHash(file);
-  if (stated && options.reading.swept) stated = sweptHash(*stated);
+  if (stated) stated = adaptedHash(*stated, source.reference.reading);
   if (stated && *stated != hash) {
     throw InputError(fmt::format("{}: its hash is {}, but {} says {}: changed since it was baked",
                                  file.string(), hash,

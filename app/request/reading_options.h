@@ -4,12 +4,14 @@
 #include <string>
 
 #include "broadmark/parameters.h"
+#include "broadmark/recordings/widened_frames.h"
 
 namespace broadmark {
 
 /// Each is a command line option; results state those that are not at their defaults.
 struct ReadingOptions : Parametrised {
   bool swept = false;
+  double widen = 0;
   Choice format{"auto", {"auto", "csv", "xyz", "lammps", "ply", "obj", "stl", "gltf"}};
   bool strict = false;
   Choice elements{"triangles", {"vertices", "edges", "triangles", "all"}};
@@ -25,6 +27,10 @@ struct ReadingOptions : Parametrised {
            "extend each box to contain that of the previous frame, too, rounded outward, as for "
            "continuous collision detection",
            &swept});
+    visit({"widen",
+           "grow each box by half of this distance on every side, rounded outward: pairs of bodies "
+           "no farther apart than this distance on any axis",
+           &widen, 0, kMaxWidening});
     visit(
         {"format", "imported files: their format, instead of recognising it by content", &format});
     visit({"strict", "imported files: fail if anything in them would be left out", &strict});

@@ -9,7 +9,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
-#include "broadmark/recordings/swept_frames.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "request/sweep.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
@@ -30,6 +30,12 @@ FrameProgress startTask(TaskObserver& tasks, const char* activity, const SceneIn
   };
 }
 
+void noteEscapes(const Simulation& simulation, TaskObserver& tasks) {
+  for (const std::string& line : escapeTexts(simulation)) {
+    tasks.onNote(fmt::format("{}: {}", simulation.listing().name, line));
+  }
+}
+
 /// Bakes a source's simulation into `directory`, unless already baked. Returns the path of the
 /// first recorder's recording, or "" when cancelled.
 fs::path bakeInto(Source& source, TaskObserver& tasks, const fs::path& directory,
@@ -41,6 +47,7 @@ fs::path bakeInto(Source& source, TaskObserver& tasks, const fs::path& directory
   if (std::ranges::all_of(paths, is_baked)) return paths.front();
   for (const fs::path& path : paths) makeDirectory(path.parent_path());
   const bool is_complete = bake(simulation, paths, startTask(tasks, "baking", simulation.scene()));
+  noteEscapes(simulation, tasks);
   return is_complete ? paths.front() : fs::path();
 }
 
@@ -54,19 +61,21 @@ std::unique_ptr<Recording> recordTemporary(const char* activity, FrameSource& fr
 /// Opens the recording that a run was planned for. Throws InputError if it has been replaced.
 std::unique_ptr<Recording> reopen(const RecordingReference& reference) {
   auto recording = openRecordingFile(reference.path);
-  SceneInfo scene = recording->scene();
-  scene.name = reference.scene.name;  // may have the suffix of swept boxes
-  if (scene == reference.scene) return recording;
+  if (adaptedScene(recording->scene(), reference.reading) == reference.scene) return recording;
   throw InputError(fmt::format("{}: was replaced after the run had started", reference.path));
 }
 
-/// Opens a source's recording without sweeping its boxes. Returns null when cancelled.
-std::unique_ptr<Recording> openUnswept(Source& source, TaskObserver& tasks,
-                                       const fs::path& directory,
-                                       const std::vector<std::string>& recorders) {
+/// Opens a source's recording with its own boxes. Returns null when cancelled.
+std::unique_ptr<Recording> openUnadapted(Source& source, TaskObserver& tasks,
+                                         const fs::path& directory,
+                                         const std::vector<std::string>& recorders) {
   if (source.imported) return recordTemporary("importing", *source.imported, tasks);
   if (!source.simulation) return reopen(source.reference);
-  if (directory.empty()) return recordTemporary("baking", *source.simulation, tasks);
+  if (directory.empty()) {
+    auto recording = recordTemporary("baking", *source.simulation, tasks);
+    noteEscapes(*source.simulation, tasks);
+    return recording;
+  }
   const fs::path path = bakeInto(source, tasks, directory, recorders);
   return path.empty() ? nullptr : openRecordingFile(path);
 }
@@ -76,18 +85,16 @@ std::unique_ptr<Recording> openUnswept(Source& source, TaskObserver& tasks,
 std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks,
                                              const fs::path& directory,
                                              const std::vector<std::string>& recorders) {
-  std::unique_ptr<Recording> recording = openUnswept(source, tasks, directory, recorders);
+  std::unique_ptr<Recording> recording = openUnadapted(source, tasks, directory, recorders);
   if (!recording) return nullptr;
-  const bool swept = source.reference.reading.contains("swept");
-  const std::string hash = swept ? sweptHash(recording->hash()) : recording->hash();
+  const std::string hash = adaptedHash(recording->hash(), source.reference.reading);
   source.reference.hash = hash;
   if (!source.expected_hash.empty()) {
     requireHash(source.simulation ? source.reference.scene.name + ", simulated again"
                                   : source.reference.path,
                 hash, source.expected_hash);
   }
-  if (swept) return std::make_unique<SweptFrames>(std::move(recording));
-  return recording;
+  return adapted(std::move(recording), source.reference.reading);
 }
 
 std::unique_ptr<IndexedFrames> openForCommand(Source& source, bool quiet) {

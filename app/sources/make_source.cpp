@@ -13,8 +13,8 @@
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
 #include "broadmark/names.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "broadmark/recordings/recording.h"
-#include "broadmark/recordings/swept_frames.h"
 #include "request/sweep.h"
 
 namespace broadmark {
@@ -163,14 +163,16 @@ Source fileSource(const std::vector<std::string>& names, const ReadingOptions& r
   std::vector<PlanEntry> entries(1);
   Source& source = entries.front().source;
   source = import ? importedSource(names, *import, reading) : recordingSource(names.front());
-  if (reading.swept) sweepBoxes(source);
+  adaptBoxes(source, reading);
   requireReadingUsed(reading, entries);
   return std::move(source);
 }
 
-void sweepBoxes(Source& source) {
-  source.reference.scene.name = sweptName(source.reference.scene);
-  source.reference.reading["swept"] = "on";
+void adaptBoxes(Source& source, ReadingOptions reading) {
+  const ParameterValues adapters = adaptersIn(reading.changed());
+  RecordingReference& reference = source.reference;
+  reference.scene = adaptedScene(std::move(reference.scene), adapters);
+  reference.reading.insert(adapters.begin(), adapters.end());
 }
 
 fs::path resolvedPath(const fs::path& file, const std::string& stated) {

@@ -30,8 +30,8 @@ Source importedSource(const std::vector<std::string>& names, const FileImport&, 
 /// an option that does not apply to them.
 Source fileSource(const std::vector<std::string>& names, const ReadingOptions&);
 
-/// Marks a source for sweeping its boxes.
-void sweepBoxes(Source&);
+/// Marks a source for the options among these that change the boxes of any source.
+void adaptBoxes(Source&, ReadingOptions);
 
 /// Resolves a path stated in `file`: returned unchanged if it exists, else relative to `file`.
 std::filesystem::path resolvedPath(const std::filesystem::path& file, const std::string& stated);

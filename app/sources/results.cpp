@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "broadmark/names.h"
-#include "broadmark/recordings/swept_frames.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "request/cases.h"
 #include "sources/make_source.h"
 
@@ -75,10 +75,7 @@ Source recreatedSimulation(const RecordingReference& reference, const fs::path& 
     return simulationSource(std::move(simulation));
   }
   const auto engine = parameters.find("engine");  // adds parameters
-  std::string name = reference.scene.name;
-  if (reference.reading.contains("swept") && name.ends_with(kSweptSuffix)) {
-    name.resize(name.size() - kSweptSuffix.size());
-  }
+  const std::string name = unadaptedName(reference.scene.name, reference.reading);
   auto simulation = makeSimulation(name, engine == parameters.end() ? "" : engine->second);
   setParameters(*simulation, parameters);
   return simulationSource(std::move(simulation));
@@ -91,7 +88,7 @@ Source sourceOf(const RecordingReference& reference, const fs::path& results_fil
   Source source;
   if (reference.path.empty()) {
     source = recreatedSimulation(reference, results_file);
-    if (reading.swept) sweepBoxes(source);
+    adaptBoxes(source, reading);
   } else {
     source = fileSource({resolvedPath(results_file, reference.path).string()}, reading);
   }

@@ -172,9 +172,7 @@ bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(n
 OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
   NamedSource source(name);
   OpenedSource opened = openAny(source, options);
-  if (options.reading.swept) {
-    for (PlanEntry& entry : opened.entries) sweepBoxes(entry.source);
-  }
+  for (PlanEntry& entry : opened.entries) adaptBoxes(entry.source, options.reading);
   return opened;
 }
 

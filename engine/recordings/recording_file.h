@@ -26,6 +26,11 @@
 
 namespace broadmark {
 
+/// The name of a scene made from this one: with a suffix, within kMaxNameLength.
+inline std::string suffixedName(const SceneInfo& scene, std::string_view suffix) {
+  return scene.name.substr(0, kMaxNameLength - suffix.size()).append(suffix);
+}
+
 /// Bytes of a box or a pose in a set.
 inline constexpr std::size_t kRecordBytes = 32;
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "broadmark/recordings/recording.h"
+#include "recording_file.h"
 
 namespace broadmark {
 
@@ -53,7 +54,7 @@ std::span<const Aabb> SubRecording::readBoxes(std::uint32_t index) {
 std::string partName(const SceneInfo& scene) {
   constexpr std::string_view kSuffix = " case";
   if (scene.name.ends_with(kSuffix)) return scene.name;
-  return scene.name.substr(0, kMaxNameLength - kSuffix.size()).append(kSuffix);
+  return suffixedName(scene, kSuffix);
 }
 
 std::string writeSelection(const std::filesystem::path& path, IndexedFrames& whole,

@@ -8,9 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <string_view>
 
-#include "broadmark/hasher.h"
+#include "recording_file.h"
 
 namespace broadmark {
 namespace {
@@ -33,21 +32,13 @@ Aabb sweptBox(const Aabb& before, const Aabb& now) {
   return box;
 }
 
-std::string sweptName(const SceneInfo& scene) {
-  return scene.name.substr(0, kMaxNameLength - kSweptSuffix.size()).append(kSweptSuffix);
-}
-
-std::string sweptHash(const std::string& hash) {
-  Hasher hasher;
-  hasher.add(std::as_bytes(std::span(std::string_view("swept "))));
-  hasher.add(std::as_bytes(std::span(hash)));
-  return hasher.hex();
+SceneInfo sweptScene(SceneInfo scene) {
+  scene.name = suffixedName(scene, kSweptSuffix);
+  return scene;
 }
 
 SweptFrames::SweptFrames(std::unique_ptr<IndexedFrames> frames)
-    : frames_(std::move(frames)), scene_(frames_->scene()), boxes_(scene_.objects) {
-  scene_.name = sweptName(scene_);
-}
+    : frames_(std::move(frames)), scene_(sweptScene(frames_->scene())), boxes_(scene_.objects) {}
 
 std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {
   if (index == 0 || last_ != index - 1) {

@@ -2,6 +2,7 @@
 
 #include "command_line/run_requests.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,7 +59,8 @@ TEST_F(RunRequests, KeepEveryOption) {
       {"--precision", "1.5%", "--max-seconds", "60", "--order-seed", "7", "--warmup", "2"},
       {"--time-limit", "0.25", "--allow-timeout", "--check", "hash", "--hard-limit", "2.5"},
       {"--pin", "--memory-limit", "0.5", "--json", "r.json", "--csv", "r.csv", "--record", "dir"},
-      {"--screenshot", "s.png", "--frame", "0", "--size", "16x9", "--gl", "egl", "--swept"},
+      {"--screenshot", "s.png", "--frame", "0", "--size", "16x9", "--gl", "egl", "--swept",
+       "--widen", "0.25"},
       {"--elements", "edges", "--radius", "0.5"}};
   Arguments arguments = {"--headless"};
   for (const Arguments& some : everything) {
@@ -83,6 +85,7 @@ TEST_F(RunRequests, KeepEveryOption) {
   EXPECT_EQ(read.outputs, given.outputs);
   EXPECT_EQ(read.frame, 0U);
   EXPECT_TRUE(read.reading.swept);
+  EXPECT_EQ(read.reading.widen, 0.25);
   EXPECT_EQ(read.reading.radius, 0.5);
 }
 

@@ -80,6 +80,55 @@ TEST_F(Import, ScenesAndRecordingsCanBeSwept) {
   EXPECT_THAT(duel.out, HasSubstr("Brownian swept"));
 }
 
+TEST_F(Import, AnySourceCanBeWidened) {
+  // The first two boxes touch, the third is a unit from the second.
+  writeFile(file("boxes.csv"), kCsv);
+  const auto pairs_at = [&](const std::string& distance, const Arguments& more = {}) {
+    Arguments call = {"--headless", "boxes.csv",   "--widen",
+                      distance,     "--algorithm", "sap,kd,dbvt-f,tracy,grid-bf,columns,tide",
+                      "--check",    "full",        "--json",
+                      "w.json"};
+    call.insert(call.end(), more.begin(), more.end());
+    runQuietly(call);
+    for (const Json& result : readJson(file("w.json"))["cases"]) {
+      EXPECT_EQ(result["status"], "ok") << result["algorithm"];
+    }
+    return pairsOf(file("w.json"));
+  };
+  EXPECT_THAT(pairs_at("0.99"), ElementsAre(0, 0));
+  EXPECT_THAT(pairs_at("1"), ElementsAre(1, 1));
+  EXPECT_THAT(pairs_at("2"), ElementsAre(2, 1));
+  EXPECT_THAT(pairs_at("1e30", {"--answer", "events", "--threads", "2"}), ElementsAre(3, 1));
+
+  const Json result = readJson(file("w.json"))["cases"][0];
+  EXPECT_EQ(result["recording"]["reading"], Json::parse(R"({"widen": "1e+30"})"));
+  EXPECT_EQ(result["recording"]["name"], "boxes widened");
+  EXPECT_THAT(result["id"].get<std::string>(), HasSubstr("boxes widened/Boxes/N3/F2/widen=1e+30/"));
+  runQuietly({"--headless", "w.json", "--case", result["id"], "--json", "again.json"});
+  EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], result["recording"]);
+
+  // Imported so, they are boxes like any others; and so are those of scenes.
+  EXPECT_EQ(run({"import", "boxes.csv", "--widen", "1", "-o", "wide"}).status, 0);
+  runQuietly({"--headless", "wide.broadmark", "--algorithm", "sap", "--json", "i.json"});
+  EXPECT_THAT(pairsOf(file("i.json")), ElementsAre(1, 1));
+  runQuietly({"--headless", "brownian", "--objects", "40", "--frames", "4", "--swept", "--widen",
+              "0.25", "--algorithm", "sap,bf-simd,axis-sweep,cgal", "--check", "full", "--json",
+              "b.json"});
+  const Json scene = readJson(file("b.json"))["cases"][0];
+  EXPECT_EQ(scene["recording"]["name"], "Brownian swept widened");
+  runQuietly({"--headless", "b.json", "--case", scene["id"], "--json", "c.json"});
+  EXPECT_THAT(run({"verify", "boxes.csv", "--widen", "2", "--describe"}).out,
+              HasSubstr("boxes widened"));
+  const ProgramResult duel = run({"duel", "wide.broadmark", "sap", "bf", "--widen", "1",
+                                  "--max-seconds", "0.3", "--json", "-"});
+  EXPECT_EQ(duel.status, 0) << duel.err;
+  EXPECT_THAT(duel.out, HasSubstr("wide"));
+
+  for (const std::string wrong : {"-1", "nan", "inf", "1e39", "far", ""}) {
+    expectRefusal({"--headless", "boxes.csv", "--widen", wrong, "--algorithm", "sap"}, {"--widen"});
+  }
+}
+
 TEST_F(Import, MakesRecordings) {
   writeFile(file("boxes.csv"), kCsv);
   EXPECT_EQ(run({"import", "boxes.csv", "-o", "boxes"}).status, 0);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/made_frames.h"
 #include "torture/inputs.h"
 
 namespace broadmark::tests {
@@ -17,39 +18,6 @@ using Boxes = std::vector<Aabb>;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
-
-/// Frames in memory, with or without a list of changed bodies.
-class MadeFrames final : public IndexedFrames {
- public:
-  MadeFrames(std::vector<Boxes> frames, bool lists_changed) : frames_(std::move(frames)) {
-    scene_.name = "Made";
-    scene_.objects = static_cast<std::uint32_t>(frames_.front().size());
-    scene_.frames = static_cast<std::uint32_t>(frames_.size() - 1);
-    scene_.all_present = false;
-    if (lists_changed) changed_.emplace();
-  }
-  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-
- private:
-  std::span<const Aabb> readBoxes(std::uint32_t index) override {
-    // A copy: a frame is valid until the next call only.
-    now_ = frames_[index];
-    if (!changed_) return now_;
-    changed_->clear();
-    for (std::uint32_t body = 0; index > 0 && body < now_.size(); ++body) {
-      if (now_[body] != frames_[index - 1][body]) changed_->push_back(body);
-    }
-    return now_;
-  }
-  [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override {
-    return changed_;
-  }
-
-  SceneInfo scene_;
-  std::vector<Boxes> frames_;
-  Boxes now_;
-  std::optional<std::vector<std::uint32_t>> changed_;
-};
 
 SweptFrames swept(const std::vector<Boxes>& frames, bool lists_changed = true) {
   return SweptFrames(std::make_unique<MadeFrames>(frames, lists_changed));
@@ -170,11 +138,6 @@ TEST(SweptFrames, ASingleFrameIsOnlyRounded) {
   SweptFrames frames = swept({{at(2)}});
   EXPECT_EQ(frames.rewind().boxes[0], around(2, 3));
   EXPECT_FALSE(frames.next());
-}
-
-TEST(SweptFrames, HaveAHashOfTheirOwn) {
-  EXPECT_NE(sweptHash("a"), sweptHash("b"));
-  EXPECT_EQ(sweptHash(std::string(32, '0')).size(), 32U);
 }
 
 }  // namespace

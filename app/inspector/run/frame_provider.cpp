@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "broadmark/error.h"
-#include "broadmark/recordings/swept_frames.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
@@ -41,21 +41,15 @@ void append(const FileDescriptor& file, std::span<const Aabb> boxes) {
   writeAll(file.get(), std::as_bytes(boxes), kTemporaryName);
 }
 
-/// Wraps the frames in SweptFrames if `swept`.
-std::unique_ptr<IndexedFrames> sweptIf(std::unique_ptr<IndexedFrames> frames, bool swept) {
-  if (!swept) return frames;
-  return std::make_unique<SweptFrames>(std::move(frames));
-}
-
 }  // namespace
 
-FrameProvider::FrameProvider(std::unique_ptr<Recording> recording, bool swept)
-    : swept_(swept),
+FrameProvider::FrameProvider(std::unique_ptr<Recording> recording, ParameterValues reading)
+    : reading_(std::move(reading)),
       available_(recording->scene().frames),
-      frames_(sweptIf(std::move(recording), swept)) {}
+      frames_(adapted(std::move(recording), reading_)) {}
 
-FrameProvider::FrameProvider(std::unique_ptr<FrameSource> simulation, bool swept)
-    : swept_(swept), simulation_(std::move(simulation)) {
+FrameProvider::FrameProvider(std::unique_ptr<FrameSource> simulation, ParameterValues reading)
+    : reading_(std::move(reading)), simulation_(std::move(simulation)) {
   const Frame first = simulation_->rewind();
   store(simulation_->scene(), first.boxes);
 }
@@ -64,7 +58,7 @@ FrameProvider::FrameProvider(SceneInfo scene, std::span<const Aabb> boxes) { sto
 
 void FrameProvider::store(const SceneInfo& scene, std::span<const Aabb> first) {
   file_ = std::make_shared<const FileDescriptor>(unnamedFile());
-  frames_ = sweptIf(std::make_unique<TemporaryFrames>(scene, file_), swept_);
+  frames_ = adapted(std::make_unique<TemporaryFrames>(scene, file_), reading_);
   append(*file_, first);
 }
 
@@ -86,16 +80,16 @@ scenes::AuthoredScene FrameProvider::authoredScene(std::uint32_t index) {
 
 FrameOpener FrameProvider::opener() const {
   if (!file_) {
-    return [name = frames_->name(), swept = swept_](std::uint32_t /*last*/) {
-      return sweptIf(openRecordingFile(name), swept);
+    return [name = frames_->name(), reading = reading_](std::uint32_t /*last*/) {
+      return adapted(openRecordingFile(name), reading);
     };
   }
   auto scene =
       std::make_shared<const SceneInfo>(simulation_ ? simulation_->scene() : this->scene());
-  return [scene = std::move(scene), file = file_, swept = swept_](std::uint32_t last) {
+  return [scene = std::move(scene), file = file_, reading = reading_](std::uint32_t last) {
     SceneInfo available = *scene;
     available.frames = last;
-    return sweptIf(std::make_unique<TemporaryFrames>(std::move(available), file), swept);
+    return adapted(std::make_unique<TemporaryFrames>(std::move(available), file), reading);
   };
 }
 

@@ -18,12 +18,13 @@ namespace broadmark {
 using FrameOpener = std::function<std::unique_ptr<IndexedFrames>(std::uint32_t last)>;
 
 /// A recording, or a live simulation or import that is run on demand: its frames are written to an
-/// unnamed temporary file for random access. Either can be shown as swept boxes. Not thread-safe.
+/// unnamed temporary file for random access. Either can be shown with adapted boxes
+/// (adapted_frames.h), as `reading` says. Not thread-safe.
 class FrameProvider {
  public:
-  explicit FrameProvider(std::unique_ptr<Recording> recording, bool swept = false);
+  explicit FrameProvider(std::unique_ptr<Recording> recording, ParameterValues reading = {});
   /// Starts the simulation with its current parameters.
-  explicit FrameProvider(std::unique_ptr<FrameSource> simulation, bool swept = false);
+  explicit FrameProvider(std::unique_ptr<FrameSource> simulation, ParameterValues reading = {});
   /// A scene of a single frame; `scene.frames` is 0.
   FrameProvider(SceneInfo scene, std::span<const Aabb> boxes);
 
@@ -51,7 +52,7 @@ class FrameProvider {
   /// Starts the temporary file with the first frame.
   void store(const SceneInfo& scene, std::span<const Aabb> first);
 
-  bool swept_ = false;
+  ParameterValues reading_;
   std::uint32_t available_ = 0;
   std::unique_ptr<IndexedFrames> frames_;
   std::unique_ptr<FrameSource> simulation_;

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "broadmark/recordings/recording.h"
-#include "broadmark/recordings/swept_frames.h"
 #include "run/recordings.h"
 #include "sources/make_source.h"
 
@@ -29,27 +29,28 @@ std::string parametersOf(const Recording& recording, const fs::path& path) {
 
 }  // namespace
 
-FrameProviderRequest simulationSource(Simulation& simulation, bool swept) {
+FrameProviderRequest simulationSource(Simulation& simulation, ParameterValues reading) {
   const std::string text = formatSceneParameters(simulation);
   return {.open =
-              [text, swept] {
+              [text, reading = std::move(reading)] {
                 return std::make_unique<FrameProvider>(
-                    parseSceneParameters(text, "scene parameters"), swept);
+                    parseSceneParameters(text, "scene parameters"), reading);
               },
           .origin = FrameOrigin::simulation,
           .title = simulation.listing().name,
           .scene_parameters = text};
 }
 
-FrameProviderRequest recordingSource(const fs::path& path, const std::string& hash, bool swept) {
+FrameProviderRequest recordingSource(const fs::path& path, const std::string& hash,
+                                     ParameterValues reading) {
   // Open the file here, too, so that an invalid one is reported at once.
   const std::string parameters = parametersOf(*openRecordingFile(path), path);
-  const auto open = [path, hash, swept] {
+  const auto open = [path, hash, reading = std::move(reading)] {
     std::unique_ptr<Recording> recording = openRecordingFile(path);
     if (!hash.empty()) {
-      requireHash(path.string(), swept ? sweptHash(recording->hash()) : recording->hash(), hash);
+      requireHash(path.string(), adaptedHash(recording->hash(), reading), hash);
     }
-    return std::make_unique<FrameProvider>(std::move(recording), swept);
+    return std::make_unique<FrameProvider>(std::move(recording), reading);
   };
   return {.open = open,
           .origin = FrameOrigin::recording,
@@ -58,14 +59,14 @@ FrameProviderRequest recordingSource(const fs::path& path, const std::string& ha
           .scene_parameters = parameters};
 }
 
-FrameProviderRequest importSource(const RecordingReference& reference, bool swept) {
-  const auto open = [reference, swept]() -> std::unique_ptr<FrameProvider> {
-    ReadingOptions reading;
-    setParameters(reading, reference.reading);
-    const auto import = importOf(reference.path, reading.format.value);
+FrameProviderRequest importSource(const RecordingReference& reference, ParameterValues reading) {
+  const auto open = [reference, reading = std::move(reading)]() -> std::unique_ptr<FrameProvider> {
+    ReadingOptions options;
+    setParameters(options, reference.reading);
+    const auto import = importOf(reference.path, options.format.value);
     if (!import) throw InputError(fmt::format("{}: no longer exists", reference.path));
-    Source source = importedSource({reference.path}, *import, reading);
-    return std::make_unique<FrameProvider>(std::move(source.imported), swept);
+    Source source = importedSource({reference.path}, *import, options);
+    return std::make_unique<FrameProvider>(std::move(source.imported), reading);
   };
   return {.open = open,
           .origin = FrameOrigin::import,

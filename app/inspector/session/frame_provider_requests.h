@@ -14,15 +14,15 @@
 
 namespace broadmark {
 
-// `swept`: show the frames as swept boxes.
+// `reading`: options that change the boxes (adapted_frames.h).
 
 /// Requests a simulation with the current parameters.
-FrameProviderRequest simulationSource(Simulation& simulation, bool swept);
+FrameProviderRequest simulationSource(Simulation& simulation, ParameterValues reading);
 /// `hash`: expected hash; "": any. Throws InputError.
 FrameProviderRequest recordingSource(const std::filesystem::path& path, const std::string& hash,
-                                     bool swept);
+                                     ParameterValues reading);
 /// Throws InputError.
-FrameProviderRequest importSource(const RecordingReference& reference, bool swept);
+FrameProviderRequest importSource(const RecordingReference& reference, ParameterValues reading);
 
 /// Returns the known parameters of the request's scene, including "scene"; none for null.
 ParameterValues sceneParametersOf(const FrameProviderRequest* source);
@@ -39,7 +39,7 @@ class Draft {
   void adopt(std::unique_ptr<Simulation> scene) { scene_ = std::move(scene); }
 
   /// Shows a live simulation with the current parameters.
-  void simulate() { playback_.show(simulationSource(*scene_, playback_.swept)); }
+  void simulate() { playback_.show(simulationSource(*scene_, playback_.reading)); }
   /// Whether the open source is this simulation, or was baked with these parameters.
   [[nodiscard]] bool isOpen() const;
 

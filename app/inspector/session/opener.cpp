@@ -1,9 +1,12 @@
 // Opens files of all kinds, cases of results, and plans.
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <utility>
 
 #include "broadmark/error.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "inspector/session/frame_provider_requests.h"
 #include "inspector/session/session.h"
@@ -84,22 +87,25 @@ void Session::loadSource(PlanEntry& entry, DocumentStart start) {
     }
     playback.show(std::move(request));
   };
-  playback.swept = source.reference.reading.contains("swept");
+  playback.reading = adaptersIn(source.reference.reading);
   if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
     const fs::path file = source.simulation->input();
-    if (playback.swept)
-      throw InputError("--swept: not available for an authored scene: bake it, or add --headless");
+    if (!playback.reading.empty()) {
+      throw InputError(
+          fmt::format("{}: not available for an authored scene: bake it, or add --headless",
+                      parameterOption(playback.reading.begin()->first)));
+    }
     document.load(authored->document(), file);
     if (start == DocumentStart::in_motion) document.simulate();
   } else if (source.simulation) {
     // The hash is not verified: it is known only after the last frame.
     draft.adopt(std::move(source.simulation));
-    show(simulationSource(draft.scene(), playback.swept));
+    show(simulationSource(draft.scene(), playback.reading));
   } else if (source.imported) {
-    show(importSource(source.reference, playback.swept));
+    show(importSource(source.reference, playback.reading));
     notices.on_file_used(source.reference.path);
   } else if (!source.reference.path.empty()) {
-    show(recordingSource(source.reference.path, source.expected_hash, playback.swept));
+    show(recordingSource(source.reference.path, source.expected_hash, playback.reading));
     notices.on_file_used(source.reference.path);
   }
 }
@@ -111,8 +117,8 @@ void Session::showResults(const fs::path& file, Results listed) {
 
 void Session::openExport(const ExportReport& report) {
   notices.catchErrors([&] {
-    playback.swept = false;
-    playback.show(recordingSource(report.file, {}, playback.swept));
+    playback.reading.clear();
+    playback.show(recordingSource(report.file, {}, playback.reading));
     tracks.clear();
     tracks.add(report.test_case);
     playback.seek(static_cast<std::int64_t>(report.progress.frames));

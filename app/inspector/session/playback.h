@@ -118,7 +118,7 @@ class Playback {
   [[nodiscard]] bool playing() const { return playing_; }
 
   bool loop = false;
-  bool swept = false;             ///< show sources as swept boxes
+  ParameterValues reading;        ///< options that change the boxes of sources
   double frames_per_second = 30;  ///< upper limit; algorithms may be slower
 
   // Set by the owner.

@@ -146,7 +146,7 @@ void Session::showSecond(bool on) {
 
 void Session::openInSecondView(const fs::path& recording) {
   notices.catchErrors([&] {
-    FrameProviderRequest source = recordingSource(recording, {}, playback.swept);
+    FrameProviderRequest source = recordingSource(recording, {}, playback.reading);
     second =
         SecondViewRequest{.source = std::make_shared<const FrameProviderRequest>(std::move(source)),
                           .frame = {},

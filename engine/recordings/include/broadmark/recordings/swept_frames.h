@@ -20,11 +20,8 @@ Aabb sweptBox(const Aabb& before, const Aabb& now);
 
 /// Suffix of the name of a scene with swept boxes.
 inline constexpr std::string_view kSweptSuffix = " swept";
-/// The name of a scene with swept boxes: "FreeFall swept".
-std::string sweptName(const SceneInfo&);
-
-/// The hash of a recording's swept boxes; `hash` is the recording's own.
-std::string sweptHash(const std::string& hash);
+/// The scene with swept boxes: "FreeFall swept".
+SceneInfo sweptScene(SceneInfo);
 
 /// A source with swept boxes: each box also contains the body's box in the frame
 /// before. In the initial pose boxes are only rounded outward.

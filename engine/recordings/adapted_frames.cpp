@@ -1,0 +1,104 @@
+#include "broadmark/recordings/adapted_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <ranges>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "broadmark/hasher.h"
+#include "broadmark/recordings/swept_frames.h"
+#include "broadmark/recordings/widened_frames.h"
+
+namespace broadmark {
+namespace {
+
+/// `value` is that of the option.
+struct FrameAdapter {
+  std::string_view option;
+  std::string_view suffix;  ///< of the scene's name
+  SceneInfo (*scene)(SceneInfo, const std::string& value);
+  std::unique_ptr<IndexedFrames> (*wrap)(std::unique_ptr<IndexedFrames>, const std::string& value);
+};
+
+double distanceOf(const std::string& value) {
+  double distance = 0;
+  setParameter({"widen", "", &distance, 0, kMaxWidening}, value);
+  return distance;
+}
+
+const std::array kAdapters{
+    FrameAdapter{"swept", kSweptSuffix,
+                 [](SceneInfo scene, const std::string&) { return sweptScene(std::move(scene)); },
+                 [](std::unique_ptr<IndexedFrames> frames,
+                    const std::string&) -> std::unique_ptr<IndexedFrames> {
+                   return std::make_unique<SweptFrames>(std::move(frames));
+                 }},
+    FrameAdapter{"widen", kWidenedSuffix,
+                 [](SceneInfo scene, const std::string& value) {
+                   return widenedScene(std::move(scene), distanceOf(value));
+                 },
+                 [](std::unique_ptr<IndexedFrames> frames,
+                    const std::string& value) -> std::unique_ptr<IndexedFrames> {
+                   return std::make_unique<WidenedFrames>(std::move(frames), distanceOf(value));
+                 }},
+};
+
+/// The value of the adapter's option; null without it.
+const std::string* valueOf(const FrameAdapter& adapter, const ParameterValues& reading) {
+  const auto value = reading.find(std::string(adapter.option));
+  return value == reading.end() ? nullptr : &value->second;
+}
+
+}  // namespace
+
+ParameterValues adaptersIn(ParameterValues reading) {
+  std::erase_if(reading, [](const auto& option) {
+    return std::ranges::find(kAdapters, option.first, &FrameAdapter::option) == kAdapters.end();
+  });
+  return reading;
+}
+
+std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
+                                       const ParameterValues& reading) {
+  for (const FrameAdapter& adapter : kAdapters) {
+    const std::string* value = valueOf(adapter, reading);
+    if (value != nullptr) frames = adapter.wrap(std::move(frames), *value);
+  }
+  return frames;
+}
+
+SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading) {
+  for (const FrameAdapter& adapter : kAdapters) {
+    const std::string* value = valueOf(adapter, reading);
+    if (value != nullptr) scene = adapter.scene(std::move(scene), *value);
+  }
+  return scene;
+}
+
+std::string unadaptedName(std::string name, const ParameterValues& reading) {
+  for (const FrameAdapter& adapter : kAdapters | std::views::reverse) {
+    if (valueOf(adapter, reading) == nullptr || !name.ends_with(adapter.suffix)) continue;
+    name.resize(name.size() - adapter.suffix.size());
+  }
+  return name;
+}
+
+std::string adaptedHash(std::string hash, const ParameterValues& reading) {
+  for (const FrameAdapter& adapter : kAdapters) {
+    const std::string* value = valueOf(adapter, reading);
+    if (value == nullptr) continue;
+    // A flag has no value of its own.
+    const std::string text =
+        std::string(adapter.option) + (*value == "on" ? "" : "=" + *value) + " ";
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(text)));
+    hasher.add(std::as_bytes(std::span(hash)));
+    hash = hasher.hex();
+  }
+  return hash;
+}
+
+}  // namespace broadmark
