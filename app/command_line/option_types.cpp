@@ -9,7 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "broadmark/scenes/simulation.h"
+#include "broadmark/scenes/registry.h"
+#include "command_line/usage.h"
 #include "request/former_names.h"
 #include "request/sweep.h"
 #include "support/words.h"
@@ -24,6 +25,18 @@ constexpr NameTable kGlSources{{NamedValue{GlSource::automatic, "auto"},
 std::vector<std::string> recorderIds() {
   std::vector<std::string> ids;
   for (const RecorderListing& recorder : builtinRecorders()) ids.push_back(recorder.id);
+  return ids;
+}
+
+std::vector<std::string> objectTypeIds() {
+  std::vector<std::string> ids;
+  for (const scenes::ObjectType& type : scenes::objectTypes()) ids.push_back(type.listing.id);
+  return ids;
+}
+
+std::vector<std::string> engineIds() {
+  std::vector<std::string> ids;
+  for (const EngineListing& engine : availableEngines()) ids.push_back(engine.id);
   return ids;
 }
 
@@ -135,7 +148,12 @@ CLI::Option* addShare(CLI::App& app, const std::string& name, double& target, bo
   const auto set = [&target, name, open](const std::string& text) {
     const bool percent = text.ends_with('%');
     const std::string number = text.substr(0, text.size() - (percent ? 1 : 0));
-    target = parseNumber(number, name, 0, open) / (percent ? 100 : 1);
+    const double value = parseNumber(number, name, 0, open);
+    if (!percent && value >= 1) {
+      throw InputError(
+          fmt::format("{0}: '{1}' is ambiguous: write {1}% or {2:g}%", name, number, 100 * value));
+    }
+    target = value / (percent ? 100 : 1);
   };
   return addValue(
       app, name, "SHARE", set, [&] { return fmt::format("{:.12g}%", 100 * target); }, doc);
@@ -209,6 +227,7 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
 
 CLI::Option* addOutput(CLI::App& app, std::string_view format, ResultPaths& outputs,
                        std::string_view doc) {
+  const HelpGroup group(app, "Results");
   const std::string name(format);
   const auto set = [&outputs, name](const std::string& path) { outputs[name] = path; };
   const auto get = [&outputs, name] {
@@ -235,14 +254,16 @@ CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {
   const auto set = [&](const std::vector<std::string>& names) {
     recorders = parseRecorders(names);
   };
-  return addList(
+  CLI::Option* option = addList(
       app, "--recorder", "KIND[,KIND...]", set, [&] { return joined(recorders); },
       fmt::format("kinds of recordings to keep: {} (default: {} if that can hold the "
                   "scene, else {})",
                   fmt::join(recorderIds(), ", "), kAabbsExtension, kBroadmarkExtension));
+  return suggestValues(option, recorderIds());
 }
 
 std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& options) {
+  const HelpGroup group(app, "Pictures");
   CLI::Option* size = addValue(
       app, "--size", "WxH", [&](const std::string& text) { parseSize(text, options); },
       [&] { return fmt::format("{}x{}", options.width, options.height); }, "size of the pictures");
@@ -269,6 +290,7 @@ CLI::Option* addDevice(CLI::App& app, std::string& device) {
 }
 
 std::vector<CLI::Option*> addHosts(CLI::App& app, HostOptions& hosts) {
+  const HelpGroup group(app, "How to measure");
   CLI::Option* in_process =
       addFlag(app, "--in-process", hosts.in_process,
               "run all cases in this process, for debuggers and profilers, instead of one worker "
@@ -298,6 +320,7 @@ std::string parameterOption(std::string parameter) {
 }
 
 std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& options) {
+  const HelpGroup group(app, "Imports");
   std::vector<CLI::Option*> added;
   options.visitParameters([&](const Parameter& parameter) {
     const std::string name = parameterOption(std::string(parameter.name));
@@ -319,6 +342,7 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
       return parameterValues(options).at(key);
     };
     added.push_back(addValue(app, name, type, set, get, doc));
+    if (choice) suggestValues(added.back(), std::get<Choice*>(parameter.value)->options);
   });
   return added;
 }
@@ -335,6 +359,7 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) 
           app, "--object-type", "TYPE[,TYPE...]",
           [&](const std::vector<std::string>& names) { options.object_types = names; },
           [&] { return joined(options.object_types); }, "shapes of the bodies")};
+  suggestValues(added.back(), objectTypeIds());
   for (const SceneShortcut& shortcut : kSceneShortcuts) {
     const std::string name = fmt::format("--{}", shortcut.parameter);
     const auto set = [&options, &shortcut](const std::string& text) {
@@ -348,6 +373,9 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) 
     added.push_back(shortcut.list ? addList(app, name, shortcut.type, set_list, get, shortcut.doc)
                                   : addValue(app, name, shortcut.type, set, get, shortcut.doc));
   }
+  const auto engine = std::ranges::find_if(
+      added, [](const CLI::Option* option) { return option->get_name() == "--engine"; });
+  suggestValues(*engine, engineIds());
   return added;
 }
 

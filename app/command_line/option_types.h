@@ -15,6 +15,7 @@
 #include "broadmark/error.h"
 #include "broadmark/harness/case.h"
 #include "broadmark/names.h"
+#include "command_line/usage.h"
 #include "request/hosts.h"
 #include "request/reading_options.h"
 #include "request/run_request.h"
@@ -67,7 +68,7 @@ CLI::Option* addNamed(CLI::App& app, const std::string& name, const std::string&
     target = parseNamed(text, name, table);
   };
   const auto get = [&target, &table] { return std::string(table.nameOf(target)); };
-  return addValue(app, name, type, set, get, doc);
+  return suggestValues(addValue(app, name, type, set, get, doc), table.names());
 }
 
 /// An option with a path as value.

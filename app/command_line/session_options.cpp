@@ -9,8 +9,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "broadmark/algorithms.h"
 #include "broadmark/results/results.h"
 #include "command_line/option_types.h"
+#include "command_line/usage.h"
+#include "sources/make_source.h"
 #include "sources/source.h"
 
 namespace broadmark {
@@ -25,6 +28,9 @@ enum Conflict : unsigned {
   kWindow = 8,       ///< a window: the option affects only off-screen pictures
   kRequest = 16,     ///< a run request file: the option applies to a single invocation
   kFixedCount = 32,  ///< --repetitions N: the option affects only --repetitions auto
+  kHeadless = 64,    ///< no inspector: the option affects only the inspector
+  kNoPicture = 128,  ///< no --screenshot: the option affects only pictures, or the inspector
+  kUnchecked = 256,  ///< --check off: there are no wrong pairs to print
 };
 
 Shard parseShard(const std::string& text) {
@@ -47,13 +53,17 @@ std::vector<int> parseThreads(const std::vector<std::string>& texts) {
   return threads;
 }
 
+std::vector<std::string> isaChoices() {
+  std::vector<std::string> choices = {"auto"};
+  for (const auto& entry : kIsas.entries) choices.emplace_back(entry.name);
+  return choices;
+}
+
 std::vector<Isa> parseIsas(const std::vector<std::string>& names) {
-  std::vector<std::string> known = {"auto"};
-  for (const auto& entry : kIsas.entries) known.emplace_back(entry.name);
   std::vector<Isa> isas;
   for (const std::string& name : names) {
     const auto isa = name == "auto" ? bestIsa() : kIsas.find(name);
-    if (!isa) throw InputError("--isa: " + unknownName("value", name, known));
+    if (!isa) throw InputError("--isa: " + unknownName("value", name, isaChoices()));
     isas.push_back(*isa);
   }
   return isas;
@@ -68,34 +78,37 @@ std::string isaNames(const std::vector<Isa>& isas) {
 }  // namespace
 
 SessionParser::SessionParser(CLI::App& app) : app_(app) {
-  addInvocation();
+  addSources();
   addCases();
   addRun();
   addOutput();
   addPictures();
-  addScene();
-  addCaseOfResults();
+  for (const CLI::Option* option : addReadingOptions(app_, options_.reading)) tag(option, kCase);
+  addInvocation();
 }
 
 void SessionParser::tag(const CLI::Option* option, unsigned conflicts) {
   tagged_.emplace_back(option, conflicts);
 }
 
+void SessionParser::addSources() {
+  const HelpGroup group(app_, "What to open");
+  CLI::Option* source = app_.add_option("source", options_.sources,
+                                        fmt::format("what to open: {}", sourceKindsText()))
+                            ->type_name("SOURCE")
+                            ->default_function([this] {
+                              return fmt::format("{}", fmt::join(options_.sources, "\n"));
+                            });
+  tag(suggestValues(source, sceneIds()), kNone);
+  for (CLI::Option* option : addSceneOptions(app_, options_.scene)) tag(option, kCase);
+  tag(addParameters(app_, options_.parameters), kCase);
+  tag(addPlugins(app_, options_.plugins), kNone);
+  addCaseOfResults();
+}
+
 void SessionParser::addInvocation() {
-  tag(app_.add_option("source", options_.sources,
-                      fmt::format("what to open: {}", sourceKindsText()))
-          ->type_name("SOURCE")
-          ->default_function(
-              [this] { return fmt::format("{}", fmt::join(options_.sources, "\n")); }),
-      kNone);
   tag(app_.add_flag("--headless", options_.headless, "run without a window"), kRequest);
-  CLI::Option* ui = app_.add_flag("--ui", options_.ui,
-                                  "with --headless: draw the inspector off-screen (--screenshot)");
-  CLI::Option* script = addPath(app_, "--script", "FILE", options_.script,
-                                "script of user actions in the inspector (see docs/inspector.md)");
-  tag(ui, kRequest);
-  tag(script, kRequest);
-  hideWithout(parts::kInspector, {ui, script});
+  tag(addQuiet(app_, options_.quiet), kRequest);
   tag(addPath(app_, "--request", "FILE", options_.request_file,
               "also use the options of this run request (JSON, see docs/run-requests.md; '-': "
               "standard input); command line options override them"),
@@ -106,27 +119,27 @@ void SessionParser::addInvocation() {
 }
 
 void SessionParser::addCases() {
+  const HelpGroup group(app_, "Algorithms");
   CaseOptions& cases = options_.cases;
   using Texts = std::vector<std::string>;
-  tag(addList(
-          app_, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
-          [&] { return fmt::format("{}", fmt::join(cases.algorithms, ",")); },
-          "algorithms: ids, families, patterns such as 'sap*', or all (default; self-checks must "
-          "be named)"),
-      kCase);
-  tag(addPlugins(app_, options_.plugins), kNone);
+  CLI::Option* algorithm = addList(
+      app_, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
+      [&] { return fmt::format("{}", fmt::join(cases.algorithms, ",")); },
+      "algorithms: ids, families, patterns such as 'sap*', or all (default; self-checks must be "
+      "named)");
+  tag(suggestValues(algorithm, algorithmIds(builtinAlgorithms())), kCase);
   tag(addList(
           app_, "--threads", "T[,T...]",
           [&](const Texts& texts) { cases.threads = parseThreads(texts); },
           [&] { return fmt::format("{}", fmt::join(cases.threads, ",")); },
           "threads of parallel variants (default: all cores)"),
       kCase);
-  tag(addList(
-          app_, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
-          [&] { return isaNames(cases.isas); },
-          fmt::format("instruction sets of vectorised variants: auto (default), {}",
-                      fmt::join(kIsas.names(), ", "))),
-      kCase);
+  CLI::Option* isa = addList(
+      app_, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
+      [&] { return isaNames(cases.isas); },
+      fmt::format("instruction sets of vectorised variants: auto (default), {}",
+                  fmt::join(kIsas.names(), ", ")));
+  tag(suggestValues(isa, isaChoices()), kCase);
   tag(addAnswer(app_, cases.answer), kCase);
   tag(addDevice(app_, cases.device), kCase);
   tag(addText(app_, "--filter", "REGEX", options_.filter, "run only cases with a matching id"),
@@ -142,6 +155,7 @@ void SessionParser::addCases() {
 }
 
 void SessionParser::addRun() {
+  const HelpGroup group(app_, "How to measure");
   constexpr long long kMaxPasses = 1'000'000;
   RunPolicy& policy = options_.policy;
   RepetitionOptions& repetitions = options_.repetitions;
@@ -187,20 +201,24 @@ void SessionParser::addRun() {
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
   for (const CLI::Option* option : addHosts(app_, options_.hosts)) tag(option, kNone);
-  tag(addQuiet(app_, options_.quiet), kRequest);
 }
 
 void SessionParser::addOutput() {
+  const HelpGroup group(app_, "Results");
   for (const CLI::Option* option : addResultOutputs(app_, options_.outputs)) {
     tag(option, kExport | kInspector);
   }
-  tag(addPath(app_, "--record", "DIR", options_.record,
-              "write the simulated recordings to this directory"),
-      kExport | kInspector);
-  tag(addRecorders(app_, options_.scene.recorders), kInspector);
+  tag(addFlag(app_, "--print-pairs", options_.print_pairs,
+              "print the wrong pairs of each mismatch, with their frames"),
+      kExport | kInspector | kUnchecked);
+  CLI::Option* record = addPath(app_, "--record", "DIR", options_.record,
+                                "write the simulated recordings to this directory");
+  tag(record, kExport | kInspector);
+  tag(addRecorders(app_, options_.scene.recorders)->needs(record), kInspector);
 }
 
 void SessionParser::addPictures() {
+  const HelpGroup group(app_, "Pictures");
   constexpr long long kMaxFrame = std::numeric_limits<std::int32_t>::max();
   CLI::Option* screenshot =
       addPath(app_, "--screenshot", "FILE", options_.screenshot,
@@ -216,17 +234,18 @@ void SessionParser::addPictures() {
     return options_.frame ? fmt::format("{}", *options_.frame) : std::string();
   };
   CLI::Option* frame = addValue(app_, "--frame", "K", set_frame, get_frame, frame_help);
-  tag(frame, kNone);
+  tag(frame, kNoPicture);
   hideWithout(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app_, options_.picture)) {
-    tag(option, kWindow);
+    tag(option, kWindow | kNoPicture);
   }
-}
-
-void SessionParser::addScene() {
-  for (CLI::Option* option : addSceneOptions(app_, options_.scene)) tag(option, kCase);
-  tag(addParameters(app_, options_.parameters), kCase);
-  for (CLI::Option* option : addReadingOptions(app_, options_.reading)) tag(option, kCase);
+  CLI::Option* ui =
+      app_.add_flag("--ui", options_.ui, "with --headless: draw the inspector off-screen");
+  CLI::Option* script = addPath(app_, "--script", "FILE", options_.script,
+                                "script of user actions in the inspector (see docs/inspector.md)");
+  tag(ui, kRequest | kWindow);
+  tag(script, kRequest | kHeadless);
+  hideWithout(parts::kInspector, {ui, script});
 }
 
 void SessionParser::addCaseOfResults() {
@@ -249,6 +268,10 @@ void SessionParser::requireNoConflict() const {
       {!options_.case_id.empty(), kCase, "cannot be combined with --case, which already sets it"},
       {!options_.export_case.empty(), kExport, "cannot be combined with --export-case"},
       {options_.ui, kInspector, "only for runs without the inspector: leave out --ui"},
+      {!options_.inspector(), kHeadless, "only for the inspector: add --ui, or omit --headless"},
+      {!options_.inspector() && options_.screenshot.empty(), kNoPicture,
+       "only for pictures: add --screenshot"},
+      {options_.policy.check == CheckMode::off, kUnchecked, "cannot be combined with --check off"},
       {!options_.headless, kInspector, "only for runs without the inspector: add --headless"},
       {!options_.headless, kWindow, "only for pictures drawn off-screen: add --headless"},
       {!options_.repetitions.until_precise, kFixedCount, "only with --repetitions auto"}};
@@ -276,6 +299,10 @@ SessionOptions SessionParser::options() const {
   }
   if (!options.case_id.empty() && options.sources.size() != 1) {
     throw InputError("--case: the source must be one results file");
+  }
+  if (parts::kInspector.included && options.headless && options.ui && options.script.empty() &&
+      options.screenshot.empty()) {
+    throw InputError("--ui: has no effect without --screenshot or --script");
   }
   if (options.inspector() && options.sources.size() > 1) {
     throw InputError(fmt::format("'{}': the inspector opens one source", options.sources[1]));

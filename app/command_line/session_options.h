@@ -47,13 +47,13 @@ class SessionParser {
   [[nodiscard]] SessionOptions options() const;
 
  private:
-  void addInvocation();
+  void addSources();
   void addCases();
   void addRun();
   void addOutput();
   void addPictures();
-  void addScene();
   void addCaseOfResults();
+  void addInvocation();
   /// Stores the conflicts of an option.
   void tag(const CLI::Option* option, unsigned conflicts);
   void requireNoConflict() const;

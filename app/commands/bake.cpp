@@ -17,6 +17,7 @@
 #include "command_line/option_types.h"
 #include "commands/command.h"
 #include "request/plugins.h"
+#include "sources/make_source.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
@@ -147,7 +148,9 @@ void addScenes(CLI::App& app, Options& options) {
     auto& scenes = options.bake.sources;
     scenes.insert(scenes.end(), names.begin(), names.end());
   };
-  addList(app, "--scenes", "A[,B...]", append, {}, "built-in scenes (default: all)");
+  CLI::Option* scenes =
+      addList(app, "--scenes", "A[,B...]", append, {}, "built-in scenes (default: all)");
+  suggestValues(scenes, sceneIds());
   app.add_option_function<std::vector<std::string>>(
          "--parameters", append,
          "bake the scene described by this file: scene parameters, the .json beside a "
@@ -158,6 +161,7 @@ void addScenes(CLI::App& app, Options& options) {
 
 void addMovie(CLI::App& app, MovieOptions& movie) {
   constexpr long long kMaxEvery = 1'000'000;
+  const HelpGroup group(app, "Pictures");
   CLI::Option* directory =
       addPath(app, "--movie", "DIR", movie.directory,
               "draw each recording as numbered pictures, in a folder with its name in this "
@@ -197,7 +201,11 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {.name = "bake", .summary = "Simulates scenes into recordings, in batches.", .add = add};
+  return {.name = "bake",
+          .summary = "Simulates scenes into recordings, in batches.",
+          .examples = {"bake --scenes freefall,brownian --objects 1000,8000 --output recordings",
+                       "bake --list --objects 2000 --frames 60 --output recordings"},
+          .add = add};
 }
 
 }  // namespace broadmark::commands::bake

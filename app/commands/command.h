@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -15,9 +16,11 @@ namespace broadmark {
 struct Command {
   std::string name;
   std::string summary;
+  std::vector<std::string> examples;  ///< arguments: "list scenes"
   /// Adds the options to `app`, which must outlive the returned function. That function runs the
   /// command once `app` has parsed a command line, and returns the exit status. Throws InputError.
   std::function<int()> (*add)(CLI::App& app);
+  bool internal = false;  ///< not for users: help does not show it
 };
 
 }  // namespace broadmark

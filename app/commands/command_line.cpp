@@ -41,19 +41,17 @@ namespace broadmark {
 
 namespace {
 
-constexpr const char* kWithoutHeadless =
-    "\nWithout --headless or a command, the inspector opens, with SOURCE if one is given.";
-constexpr const char* kFooter =
-    "\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
-    "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
-
-std::string footer() {
-  std::string text = parts::kInspector.included ? kWithoutHeadless : "";
-  text += "\nExit status:\n";
+/// The end of the main command's help.
+std::string closingText() {
+  std::string text = "\nExit status:\n";
   for (const auto& [status, meaning] : kExitStatuses.entries) {
     text += fmt::format("  {:<4}{}\n", static_cast<int>(status), meaning);
   }
-  return text + kFooter;
+  text += '\n';
+  if (parts::kInspector.included) {
+    text += "Without --headless or a command, the inspector opens, with SOURCE if one is given.\n";
+  }
+  return text + "'broadmark COMMAND --help' shows a command's options, --help-all everything.\n";
 }
 
 std::vector<Command> allCommands() {
@@ -64,11 +62,30 @@ std::vector<Command> allCommands() {
   };
 }
 
-class HelpFormatter final : public CLI::Formatter {
-  std::string make_option(const CLI::Option* option, bool is_positional) const override {
-    return isShown(*option) ? Formatter::make_option(option, is_positional) : "";
+class HelpFormatter final : public CLI::FormatterBase {
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::size_t width = outputWidth();
+    std::string text = helpText(*app, name, width);
+    if (app->get_parent() != nullptr) return text;
+    if (mode == CLI::AppFormatMode::All) {
+      for (const CLI::App* command : commandsOf(*app)) {
+        text += '\n' + helpText(*command, name + ' ' + command->get_name(), width);
+      }
+    }
+    return text + closingText();
   }
 };
+
+/// Adds the options and examples of a command's help.
+void describe(CLI::App& app, const std::vector<std::string>& examples) {
+  app.set_help_flag("-h,--help", "print this help");
+  std::string text;
+  for (const std::string& example : examples) {
+    text += fmt::format("{}broadmark {}", text.empty() ? "" : "\n", example);
+  }
+  app.footer(text);
+}
 
 /// Error message for an argument that `app` does not accept; suggests the nearest option.
 std::string unexpectedText(const CLI::App& app, const std::string& argument) {
@@ -96,20 +113,25 @@ InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
 class CommandLine {
  public:
   CommandLine() {
-    app_.footer(footer());
-    app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
-    app_.set_version_flag("--version", thisEnvironment().version);
+    describe(app_, {"--headless freefall --objects 2000 --frames 60",
+                    "--headless recording.aabbs --algorithm kd,tide --repetitions auto --json "
+                    "results.json"});
     app_.formatter(std::make_shared<HelpFormatter>());
-    app_.get_formatter()->column_width(34);
     app_.require_subcommand(0, 1);
     for (const Command& command : allCommands()) {
       CLI::App* added = app_.add_subcommand(command.name, command.summary);
       commands_.emplace_back(added, command.add(*added));
+      describe(*added, command.examples);
+      if (command.internal) added->group("");
     }
+    app_.set_help_all_flag("--help-all", "print the help of all commands");
+    app_.set_version_flag("--version", thisEnvironment().version, "print the version");
   }
 
   /// Parses a command line. Returns the requested help; nothing if there is a command to run.
   std::optional<std::string> parse(std::vector<std::string> arguments) {
+    if (!arguments.empty()) requireNoMisspeltCommand(arguments.front());
+    requireDoubleDashes(arguments);
     arguments = withCurrentOptions(std::move(arguments));
     std::ranges::reverse(arguments);  // the order that CLI11 expects
     try {
@@ -134,7 +156,8 @@ class CommandLine {
   }
 
   [[nodiscard]] SessionOptions session() const {
-    requireNoMisspeltCommand(session_.parsed().sources);
+    const std::vector<std::string>& sources = session_.parsed().sources;
+    if (!sources.empty()) requireNoMisspeltCommand(sources.front());
     return session_.options();
   }
 
@@ -149,6 +172,13 @@ class CommandLine {
   }
 
  private:
+  /// Returns the command with this name, or null.
+  [[nodiscard]] const CLI::App* find(const std::string& name) const {
+    const auto found = std::ranges::find(
+        commands_, name, [](const auto& command) { return command.first->get_name(); });
+    return found == commands_.end() ? nullptr : found->first;
+  }
+
   /// Throws InputError for options before a command, which would have no effect.
   void requireNothingBeforeCommand() const {
     const auto chosen = app_.get_subcommands();
@@ -161,14 +191,23 @@ class CommandLine {
     }
   }
 
-  /// Throws InputError if the first argument is not a source but resembles a command.
-  void requireNoMisspeltCommand(const std::vector<std::string>& sources) const {
-    if (sources.empty() || isSource(sources.front())) return;
+  /// Throws InputError if an argument is neither a source nor a command but resembles one.
+  void requireNoMisspeltCommand(const std::string& argument) const {
+    if (argument.starts_with('-') || isSource(argument) || find(argument) != nullptr) return;
     std::vector<std::string> names;
-    for (const auto& [app, run] : commands_) names.push_back(app->get_name());
-    const std::string nearest = nearestName(sources.front(), names);
+    for (const CLI::App* command : commandsOf(app_)) names.push_back(command->get_name());
+    const std::string nearest = nearestName(argument, names);
     if (nearest.empty()) return;
-    throw InputError(fmt::format("'{}': did you mean the command '{}'?", sources.front(), nearest));
+    throw InputError(fmt::format("'{}': did you mean the command '{}'?", argument, nearest));
+  }
+
+  /// Throws InputError for "-headless", which CLI11 would take for -h with more letters.
+  void requireDoubleDashes(const std::vector<std::string>& arguments) const {
+    for (const std::string& argument : arguments) {
+      if (argument.size() < 3 || !argument.starts_with("-h")) continue;
+      const CLI::App* command = find(arguments.front());
+      throw InputError(unexpectedText(command == nullptr ? app_ : *command, argument));
+    }
   }
 
   CLI::App app_{"Broadmark tests, compares and validates broad-phase collision detection.",

@@ -118,6 +118,8 @@ std::function<int()> add(CLI::App& app) {
 Command command() {
   return {.name = "compare",
           .summary = "Compares runs (results as JSON) case by case, frame by frame.",
+          .examples = {"compare before.json after.json --fail-above 10%",
+                       "compare results.json --by threads"},
           .add = add};
 }
 

@@ -97,7 +97,11 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {.name = "convert", .summary = "Converts a recording to another format.", .add = add};
+  return {.name = "convert",
+          .summary = "Converts a recording to another format.",
+          .examples = {"convert city.broadmark city.aabbs",
+                       "convert recording.aabbs smaller.broadmark"},
+          .add = add};
 }
 
 }  // namespace broadmark::commands::convert

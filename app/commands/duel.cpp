@@ -155,6 +155,8 @@ std::function<int()> add(CLI::App& app) {
 Command command() {
   return {.name = "duel",
           .summary = "Finds the fastest of several variants, run in turns on the same frames.",
+          .examples = {"duel brownian kd/t2 tide/t2 --objects 8000",
+                       "duel recording.aabbs sap-simd/avx2 sap-simd/sse2 --precision 2%"},
           .add = add};
 }
 

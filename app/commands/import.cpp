@@ -81,6 +81,8 @@ std::function<int()> add(CLI::App& app) {
 Command command() {
   return {.name = "import",
           .summary = "Makes a recording of meshes, particles or boxes from other programs.",
+          .examples = {"import boxes.csv -o boxes",
+                       "import 'frames/cloth_*.ply' -o cloth --elements triangles"},
           .add = add};
 }
 

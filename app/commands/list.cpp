@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "broadmark/algorithms.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
@@ -212,11 +213,12 @@ int run(const Options& options) {
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("what", options->what, fmt::format("{}", fmt::join(choices(), ", ")))
-      ->capture_default_str();
-  app.add_option("names", options->names,
-                 "only these algorithms: ids, families, patterns such as 'sap*'")
-      ->type_name("NAME");
+  CLI::Option* what =
+      addText(app, "what", "WHAT", options->what, fmt::format("{}", fmt::join(choices(), ", ")));
+  suggestValues(what, choices());
+  CLI::Option* names = app.add_option(
+      "names", options->names, "only these algorithms: ids, families, patterns such as 'sap*'");
+  suggestValues(names->type_name("NAME"), algorithmIds(builtinAlgorithms()));
   addPlugins(app, options->plugins);
   return [options] { return run(*options); };
 }
@@ -226,6 +228,7 @@ std::function<int()> add(CLI::App& app) {
 Command command() {
   return {.name = "list",
           .summary = fmt::format("Lists {}, with parameters.", fmt::join(sectionNames(), ", ")),
+          .examples = {"list algorithms 'sap*'", "list scenes"},
           .add = add};
 }
 

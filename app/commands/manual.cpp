@@ -24,19 +24,24 @@ std::string optionEntry(const CLI::Option& option) {
   const std::string names = plain(fmt::format("{}", fmt::join(namesOf(option), ", ")));
   const bool has_name = !option.get_positional();
   std::string head = fmt::format("\\f{}{}\\fR", has_name ? 'B' : 'I', names);
-  std::string value;
-  if (takesValue(option)) {
-    if (has_name) head += fmt::format(" \\fI{}\\fR", plain(option.get_type_name()));
-    value = option.get_default_str();
+  if (has_name && takesValue(option)) {
+    head += fmt::format(" \\fI{}\\fR", plain(option.get_type_name()));
   }
-  if (!value.empty()) value = fmt::format(" (default: {})", plain(value));
-  return fmt::format(".TP\n{}\n{}{}\n", head, plain(option.get_description()), value);
+  return fmt::format(".TP\n{}\n{}\n", head, plain(descriptionOf(option)));
 }
 
-std::string optionEntries(const CLI::App& command) {
+/// The options of a command below their headings, then its examples.
+std::string commandEntries(const CLI::App& command) {
   std::string text;
-  for (const CLI::Option* option : shownOptions(command)) text += optionEntry(*option);
-  return text;
+  for (const OptionGroup& group : optionGroups(command)) {
+    text += fmt::format(".PP\n\\fB{}\\fR\n", plain(group.heading));
+    for (const CLI::Option* option : group.options) text += optionEntry(*option);
+  }
+  text += ".PP\n\\fBExamples\\fR\n.PP\n.nf\n";
+  for (const std::string& example : splitAt('\n', command.get_footer())) {
+    text += plain(example) + '\n';
+  }
+  return text + ".fi\n";
 }
 
 std::string exitStatusEntries() {
@@ -58,10 +63,10 @@ std::string manualPage(const CLI::App& main, const std::string& version) {
       ".SH DESCRIPTION\n{}\nIts README is the guide; this page lists every option.\n"
       ".SH OPTIONS\n{}.SH COMMANDS\n",
       plain(version), "tests, compares and validates broad\\-phase collision detection",
-      plain(main.get_description()), optionEntries(main));
+      plain(main.get_description()), commandEntries(main));
   for (const CLI::App* command : commandsOf(main)) {
     text += fmt::format(".SS broadmark {}\n{}\n{}", plain(command->get_name()),
-                        plain(command->get_description()), optionEntries(*command));
+                        plain(command->get_description()), commandEntries(*command));
   }
   return text + ".SH EXIT STATUS\n" + exitStatusEntries();
 }
@@ -76,7 +81,10 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {.name = "manual", .summary = "Prints the manual page (roff, for man).", .add = add};
+  return {.name = "manual",
+          .summary = "Prints the manual page (roff, for man).",
+          .examples = {"manual | man -l -", "manual > broadmark.1"},
+          .add = add};
 }
 
 }  // namespace broadmark::commands::manual

@@ -58,7 +58,11 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {.name = "merge", .summary = "Merges the results of several runs.", .add = add};
+  return {.name = "merge",
+          .summary = "Merges the results of several runs.",
+          .examples = {"merge shard-0.jsonl shard-1.jsonl --json all.json",
+                       "merge monday.json tuesday.json --csv all.csv"},
+          .add = add};
 }
 
 }  // namespace broadmark::commands::merge

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 
+#include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "command_line/option_types.h"
@@ -298,6 +299,7 @@ std::function<int()> add(CLI::App& app) {
   CLI::Option* const algorithm =
       addList(app, "--algorithm", "ID[,ID...]", set_algorithms, {},
               "algorithms: ids, families, patterns such as 'sap*', or all (default)");
+  suggestValues(algorithm, algorithmIds(builtinAlgorithms()));
   app.add_option("--case", options->case_name,
                  "only this case, written like case names: kd-mt/avx2/t2/margin=0.1")
       ->type_name("CASE")
@@ -331,6 +333,8 @@ std::function<int()> add(CLI::App& app) {
 Command command() {
   return {.name = "torture",
           .summary = "Fuzzes algorithms on random worlds, and shrinks failing cases.",
+          .examples = {"torture --minutes 10",
+                       "torture --plugin ./libmine.so --algorithm my-sweep --rounds 100"},
           .add = add};
 }
 

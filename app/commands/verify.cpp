@@ -218,8 +218,10 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {
-      .name = "verify", .summary = "Checks recordings, also against their sidecars.", .add = add};
+  return {.name = "verify",
+          .summary = "Checks recordings, also against their sidecars.",
+          .examples = {"verify recording.aabbs", "verify --describe boxes.csv"},
+          .add = add};
 }
 
 }  // namespace broadmark::commands::verify

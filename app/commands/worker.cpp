@@ -25,13 +25,15 @@ Algorithm find(const std::string& id, const std::string& plugin) {
 
 Command command() {
   return {.name = "worker",
-          .summary = "Runs a case for the broadmark process that starts it (internal).",
+          .summary = "Runs a case for the broadmark process that starts it.",
+          .examples = {},
           .add = [](CLI::App&) -> std::function<int()> {
             return [] {
               serveCase(find);
               return 0;
             };
-          }};
+          },
+          .internal = true};
 }
 
 }  // namespace broadmark::commands::worker

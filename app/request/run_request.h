@@ -67,6 +67,7 @@ struct RunRequest {
   bool allow_timeout = false;  ///< exceeded time limits do not fail the run
 
   ResultPaths outputs;
+  bool print_pairs = false;          ///< print the wrong pairs of each mismatch
   std::filesystem::path record;      ///< directory for simulated recordings; "": none
   std::filesystem::path screenshot;  ///< "": none
   PictureOptions picture;

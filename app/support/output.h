@@ -1,6 +1,7 @@
 // Output of a command's results, to a file or to standard output.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,6 +17,10 @@ void requireOutput(const std::filesystem::path&);
 
 /// Reads a file, or standard input for "-". Throws InputError.
 std::string readInput(const std::filesystem::path&);
+
+/// Number of columns of standard output: those of the variable COLUMNS, else of the terminal, else
+/// 80.
+std::size_t outputWidth();
 
 /// Writes a text; to a file atomically. Throws InputError.
 void writeOutput(const std::filesystem::path&, std::string_view text);

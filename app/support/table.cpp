@@ -78,14 +78,15 @@ std::string cellText(const CaseColumn& column, const CaseResult& result, const S
                                             : fmt::format("{:.0f}", *number);
 }
 
-std::string wrapped(const std::string& text, std::size_t start_column, std::size_t indent) {
+std::string wrapped(const std::string& text, std::size_t start_column, std::size_t indent,
+                    std::size_t line_width) {
   std::string lines;
   std::size_t column = start_column;
   bool first = true;
   std::istringstream words(text);
   for (std::string word; words >> word; first = false) {
     const std::size_t added = width(word) + (first ? 0 : 1);
-    if (!first && column + added > kMaxLineWidth) {
+    if (!first && column + added > line_width) {
       lines += fmt::format("\n{:{}}{}", "", indent, word);
       column = indent + width(word);
     } else {

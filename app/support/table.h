@@ -22,7 +22,8 @@ std::string formatTable(std::span<const CaseResult>);
 inline constexpr std::size_t kMaxLineWidth = 100;
 
 /// Wraps a text between words: the first line starts in `start_column`, the others in `indent`.
-std::string wrapped(const std::string& text, std::size_t start_column, std::size_t indent);
+std::string wrapped(const std::string& text, std::size_t start_column, std::size_t indent,
+                    std::size_t line_width = kMaxLineWidth);
 
 enum class LastColumn { whole, wrapped };
 
