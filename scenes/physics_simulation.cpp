@@ -1,13 +1,19 @@
 #include "physics_simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <exception>
 #include <functional>
 #include <map>
+#include <new>
 #include <unordered_map>
 #include <utility>
 
 #include "authoring/faults.h"
+#include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "broadmark/scenes/engine_observer.h"
 #include "broadmark/scenes/registry.h"
 #include "entries.h"
 
@@ -83,7 +89,34 @@ class WorldsEngine final : public PhysicsEngine {
   std::unordered_map<const PhysicsBody*, PhysicsEngine*> world_of_body_;
 };
 
+EngineObserver* observer = nullptr;
+
+/// Notifies the observer of a call.
+class ObservedCall {
+ public:
+  explicit ObservedCall(const std::string& what) {
+    if (observer != nullptr) observer->onCallStart(what);
+  }
+  ~ObservedCall() {
+    if (observer != nullptr) observer->onCallEnd();
+  }
+  ObservedCall(const ObservedCall&) = delete;
+  ObservedCall& operator=(const ObservedCall&) = delete;
+};
+
+/// An engine with its plug-in; "" if it is built in.
+std::string pluginEngine(const std::string& id) {
+  for (const EngineListing& engine : availableEngines()) {
+    if (engine.id == id && !engine.plugin.empty()) {
+      return fmt::format("engine '{}' of {}", id, engine.plugin);
+    }
+  }
+  return {};
+}
+
 }  // namespace
+
+void observeEngines(EngineObserver& new_observer) { observer = &new_observer; }
 
 Parametrised& ChosenEngine::parameters(const std::string& id, const PhysicsSettings& settings) {
   if (!engine_ || id_ != id) {
@@ -106,9 +139,32 @@ const SceneInfo& PhysicsSimulation::scene() const {
   return info_;
 }
 
+template <class Call>
+auto PhysicsSimulation::guarded(std::uint32_t frame, const Call& call) {
+  if (plugin_engine_.empty()) return call();
+  const std::string what = fmt::format("{}: {}, frame {}", plugin_engine_, info_.name, frame);
+  const ObservedCall observed(what);
+  try {
+    return call();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: exception: {}", what, error.what()));
+  } catch (...) {
+    throw InputError(fmt::format("{}: exception of an unknown type", what));
+  }
+}
+
 Frame PhysicsSimulation::rewind() {
   info_ = describe();
   escapes_.clear();
+  plugin_engine_ = pluginEngine(parameterValues(*this).at("engine"));
+  return guarded(0, [this] { return restart(); });
+}
+
+Frame PhysicsSimulation::restart() {
   bodies_.reset();
   makeEngine();
   bodies_.emplace(*engine_, info_);
@@ -120,6 +176,10 @@ Frame PhysicsSimulation::rewind() {
 std::optional<Frame> PhysicsSimulation::next() {
   if (!engine_) rewind();
   if (index_ == info_.frames) return {};
+  return guarded(index_ + 1, [this] { return advance(); });
+}
+
+Frame PhysicsSimulation::advance() {
   // Deferred until now, since the bodies had to match the last frame.
   if (index_ > 0) act(index_);
   ++index_;

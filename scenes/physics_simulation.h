@@ -61,12 +61,19 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   [[nodiscard]] Bodies& bodies() { return *bodies_; }
 
  private:
+  /// Returns call(), which advances to frame `frame` with the engine. An exception of a plug-in's
+  /// engine becomes an InputError that names it.
+  template <class Call>
+  auto guarded(std::uint32_t frame, const Call& call);
+  Frame restart();
+  Frame advance();
   void makeEngine();
   void addWalls();
   void freezeEscapees();
 
   mutable SceneInfo info_;
   std::unique_ptr<PhysicsEngine> engine_;
+  std::string plugin_engine_;  ///< the engine with its plug-in, for messages; "": built in
   std::optional<Bodies> bodies_;
   std::vector<Aabb> unrotated_;
   std::vector<Escape> escapes_;

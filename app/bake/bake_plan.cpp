@@ -123,8 +123,8 @@ std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress&
 }
 
 void prepare(const BakePlan& plan, const fs::path& output) {
-  requireRoom(plan, output);
   makeDirectory(output);
+  requireRoom(plan, output);
   requireWritable(plan);
 }
 

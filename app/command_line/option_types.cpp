@@ -300,9 +300,10 @@ std::vector<CLI::Option*> addHosts(CLI::App& app, HostOptions& hosts) {
       addFlag(app, "--pin", hosts.pin,
               "bind each thread of a case to its own core, choosing the least busy cores for every "
               "repetition; no effect with more threads than cores, or on a device");
-  CLI::Option* hard_limit =
-      addPositive(app, "--hard-limit", "SECONDS", hosts.hard_limit_seconds,
-                  "limit on a single call into an algorithm, after which its process is killed");
+  CLI::Option* hard_limit = addPositive(
+      app, "--hard-limit", "SECONDS", hosts.hard_limit_seconds,
+      "limit on a single call into an algorithm, after which its process is killed, and on "
+      "a frame of a plug-in's engine");
   CLI::Option* memory_limit = addValue(
       app, "--memory-limit", "GIB",
       [&](const std::string& text) {

@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 struct Options {
   BakeOptions bake;
   MovieOptions movie;
+  double hard_limit_seconds = 60;
   bool list_only = false;
   bool quiet = false;
 };
@@ -125,7 +126,7 @@ std::vector<fs::path> executePlan(BakePlan plan, const Options& options, Tally& 
 
 int run(const Options& options) {
   if (!options.movie.directory.empty()) requirePart(parts::kRenderer, "--movie");
-  addEnginesOf(options.bake.plugins);
+  addEnginesOf(options.bake.plugins, options.hard_limit_seconds);
   const InterruptGuard guard;
   const auto start = std::chrono::steady_clock::now();
   BakePlan plan = makeBakePlan(options);
@@ -189,6 +190,8 @@ std::function<int()> add(CLI::App& app) {
       app, "--threads", "T",
       [&bake](const std::string& text) { bake.threads = parseThreadCount(text); }, {},
       "recordings baked at the same time (default: all cores); does not affect their content");
+  addPositive(app, "--hard-limit", "SECONDS", options->hard_limit_seconds,
+              "limit on a frame of a plug-in's engine");
   addMovie(app, options->movie);
   app.add_flag("--list", options->list_only,
                "print what would be baked or kept, with sizes; bake nothing");

@@ -240,7 +240,9 @@ void requireParts(const SessionOptions& options) {
 /// Makes the plan, then lists it, runs it, exports its case or opens it in the inspector. Returns
 /// the exit status. Throws InputError.
 int runSession(const SessionOptions& options) {
-  addEnginesOf(options.plugins);
+  // In the inspector, the user can end a simulation.
+  addEnginesOf(options.plugins,
+               options.inspector() ? kNoEngineLimit : options.hosts.hard_limit_seconds);
   Plan plan = makePlan(options, options.inspector() ? PlanUse::open : PlanUse::run);
   if (!options.written_request.empty()) {
     writeOutput(options.written_request, formatRunRequest(options));

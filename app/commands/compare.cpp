@@ -45,14 +45,13 @@ void write(const Options& options, const Comparison& comparison) {
   }
 }
 
-/// Returns wrong_answer if a correct case has become wrong, regression for any other failing case.
+/// Returns wrong_answer if a case of B is wrong, regression for any other failing case.
 int statusOf(const Comparison& comparison) {
   int status = exit_status::success;
   for (const CaseComparison& compared : comparison.cases) {
     if (!comparison.fails(compared)) continue;
     const bool wrong =
-        compared.status_before == Status::ok &&
-        (compared.status_after == Status::mismatch || compared.status_after == Status::error);
+        compared.status_after == Status::mismatch || compared.status_after == Status::error;
     if (wrong) return exit_status::wrong_answer;
     status = exit_status::regression;
   }

@@ -85,7 +85,7 @@ void printWarnings(const std::vector<DuelSide>& sides) {
 }
 
 int run(Options options) {
-  addEnginesOf(options.plugins);
+  addEnginesOf(options.plugins, options.hosts.hard_limit_seconds);
   if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);

@@ -26,6 +26,7 @@
 #include "run/export_case.h"
 #include "run/plan.h"
 #include "run/recordings.h"
+#include "run/wrong_pairs.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
@@ -252,7 +253,11 @@ class Torture {
                      .file = file.string(),
                      .bodies = finding.part.bodies.size(),
                      .frames = finding.part.frames.size() - 1,
-                     .minimal = finding.minimal};
+                     .minimal = finding.minimal,
+                     .boxes = smallPartText(*finding.frames, finding.part)};
+    if (const auto& pair = finding.fault.suspects; pair.size() == 2 && !found.boxes.empty()) {
+      found.boxes += fmt::format("  wrong pair: {}-{}\n", pair[0], pair[1]);
+    }
     found.command = finding.fault.kind == FaultKind::wrong_answer ||
                             finding.fault.kind == FaultKind::failure ||
                             finding.fault.kind == FaultKind::hang

@@ -16,10 +16,10 @@ namespace {
 constexpr const char* kSchema = "broadmark-torture/1";
 
 Json toJson(const FoundFault& fault) {
-  return {{"algorithm", fault.algorithm}, {"kind", fault.kind},      {"case", fault.test_case},
-          {"world", fault.world},         {"text", fault.text},      {"round", fault.round},
-          {"file", fault.file},           {"bodies", fault.bodies},  {"frames", fault.frames},
-          {"minimal", fault.minimal},     {"command", fault.command}};
+  return {{"algorithm", fault.algorithm}, {"kind", fault.kind},       {"case", fault.test_case},
+          {"world", fault.world},         {"text", fault.text},       {"round", fault.round},
+          {"file", fault.file},           {"bodies", fault.bodies},   {"frames", fault.frames},
+          {"minimal", fault.minimal},     {"command", fault.command}, {"boxes", fault.boxes}};
 }
 
 FoundFault foundFrom(const JsonFields& json) {
@@ -33,6 +33,7 @@ FoundFault foundFrom(const JsonFields& json) {
           .bodies = json.integer<std::size_t>("bodies"),
           .frames = json.integer<std::size_t>("frames"),
           .minimal = json.boolean("minimal"),
+          .boxes = json.has("boxes") ? json.text("boxes") : "",
           .command = json.text("command")};
 }
 
@@ -143,9 +144,10 @@ std::string tortureLogText(const TortureLog& log) {
 }
 
 std::string formatFoundFault(const FoundFault& fault) {
-  return fmt::format("{}: {}: {} ({}{})", fault.test_case, fault.kind, fault.text,
-                     extentText(fault.bodies, fault.frames),
-                     fault.minimal ? "" : ", perhaps not the smallest");
+  return fmt::format(
+      "{}: {}: {} ({}{}){}{}", fault.test_case, fault.kind, fault.text,
+      extentText(fault.bodies, fault.frames), fault.minimal ? "" : ", perhaps not the smallest",
+      fault.boxes.empty() ? "" : "\n", fault.boxes.substr(0, fault.boxes.rfind('\n')));
 }
 
 std::string formatTortureLog(const TortureLog& log) {

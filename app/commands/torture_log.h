@@ -24,6 +24,7 @@ struct FoundFault {
   std::size_t bodies = 0;
   std::size_t frames = 0;  ///< the initial pose not counted
   bool minimal = false;
+  std::string boxes;    ///< lines with the boxes and the wrong pair of a few bodies; "": too many
   std::string command;  ///< reproduces the fault
 };
 

@@ -117,7 +117,8 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
                           .verdict = Verdict::not_timed,
                           .conditions = differencesOf(before.front(), after),
                           .status_before = a.status,
-                          .status_after = b.status};
+                          .status_after = b.status,
+                          .reason = b.reason};
   const auto refused = [](const ConditionDifference& difference) { return difference.refused; };
   if (a.status != b.status) {
     compared.verdict = a.status == Status::ok ? Verdict::regressed : Verdict::other_status;
@@ -237,7 +238,8 @@ std::size_t Comparison::count(Verdict verdict) const {
 }
 
 bool Comparison::fails(const CaseComparison& compared) const {
-  return compared.verdict == Verdict::regressed ||
+  return compared.status_after == Status::mismatch || compared.status_after == Status::error ||
+         compared.verdict == Verdict::regressed ||
          (compared.verdict == Verdict::missing && !options.allow_missing) ||
          (compared.verdict == Verdict::undecided && options.fail_undecided);
 }

@@ -27,6 +27,7 @@ struct CaseComparison {
   // For a case on the same recording in both runs.
   Status status_before = Status::ok;
   Status status_after = Status::ok;
+  std::string reason = {};             ///< of status_after
   std::optional<RunRatio> ratio = {};  ///< if the case is ok in both
 };
 
@@ -48,7 +49,7 @@ struct Comparison {
   std::vector<std::string> notes;  ///< on the runs as a whole
 
   [[nodiscard]] std::size_t count(Verdict verdict) const;
-  /// Whether the case is a failure of B.
+  /// Whether the case is a failure of B: a wrong answer always is.
   [[nodiscard]] bool fails(const CaseComparison& compared) const;
   /// Whether any case ran on the same recording in both runs.
   [[nodiscard]] bool comparable() const;

@@ -130,8 +130,17 @@ bool isSkipped(const CaseComparison& compared) {
          compared.verdict == Verdict::other_recording || compared.verdict == Verdict::not_timed;
 }
 
+/// The verdict with its reason, and the times with their ratio.
+std::string detailText(const CaseComparison& compared) {
+  std::string text = verdictText(compared);
+  if (!compared.reason.empty()) text += ": " + compared.reason;
+  if (!compared.ratio) return text;
+  const std::vector<std::string> times = timeCells(compared);
+  return text + fmt::format(": B/A {} ({}), {} -> {}", times[2], times[3], times[0], times[1]);
+}
+
 std::string testCase(const Comparison& comparison, const CaseComparison& compared) {
-  const std::string verdict = escapedForXml(verdictText(compared));
+  const std::string verdict = escapedForXml(detailText(compared));
   std::string text =
       fmt::format("  <testcase classname=\"broadmark\" name=\"{}\" time=\"{:.9f}\"",
                   escapedForXml(compared.id), compared.ratio ? compared.ratio->after : 0);
@@ -169,9 +178,8 @@ std::string github(const Comparison& comparison) {
   for (const CaseComparison& compared : comparison.cases) {
     const bool fails = comparison.fails(compared);
     if (!fails && compared.verdict != Verdict::undecided) continue;
-    text +=
-        fmt::format("::{} title=broadmark compare::{}\n", fails ? "error" : "warning",
-                    escapedForGithub(fmt::format("{}: {}", compared.id, verdictText(compared))));
+    text += fmt::format("::{} title=broadmark compare::{}\n", fails ? "error" : "warning",
+                        escapedForGithub(fmt::format("{}: {}", compared.id, detailText(compared))));
   }
   return text + fmt::format("::notice title=broadmark compare::{}\n",
                             escapedForGithub(summaryText(comparison)));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string_view>
 
@@ -19,6 +20,7 @@
 #include "broadmark/scenes/engine_plugin.h"
 #include "broadmark/scenes/simulation.h"
 #include "request/cases.h"
+#include "request/plugin_guard.h"
 
 namespace broadmark {
 namespace {
@@ -117,6 +119,32 @@ void requireValid(const std::string& file, std::string_view kind, std::string_vi
                      other->empty() ? "built in" : "of " + *other));
 }
 
+/// Throws InputError for two parameters with one name, or a default out of range.
+void requireValidParameters(const std::string& file, std::string_view kind, std::string_view id,
+                            Parametrised& object) {
+  std::set<std::string> names;
+  object.visitParameters([&](const Parameter& parameter) {
+    if (!names.emplace(parameter.name).second) {
+      refuse(file, kind, id, fmt::format("has two parameters '{}'", parameter.name));
+    }
+    try {
+      setParameter(parameter, parameterText(parameter));
+    } catch (const InputError& error) {
+      refuse(file, kind, id, fmt::format("default out of range: {}", error.what()));
+    }
+  });
+}
+
+/// Returns create(), guarded against a crash; null without a `create`.
+template <class Create, class... Arguments>
+auto instanceOf(const std::string& file, std::string_view kind, std::string_view id,
+                const Create& create, const Arguments&... arguments)
+    -> decltype(create(arguments...)) {
+  if (!create) return nullptr;
+  const PluginCall call(fmt::format("{} '{}' of {}: creation", kind, id, file));
+  return create(arguments...);
+}
+
 /// Throws InputError for an engine that cannot be selected or created, or that has a parameter with
 /// the name of a scene's parameter.
 void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
@@ -124,9 +152,10 @@ void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
   const std::string& id = engine.listing.id;
   const std::vector<EngineListing> known = availableEngines();
   const auto other = std::ranges::find(known, id, &EngineListing::id);
-  const auto instance = engine.create == nullptr ? nullptr : engine.create({});
+  const auto instance = instanceOf(file, kKind, id, engine.create, scenes::PhysicsSettings());
   requireValid(file, kKind, id, instance != nullptr,
                other == known.end() ? nullptr : &other->plugin);
+  requireValidParameters(file, kKind, id, *instance);
   const std::vector<std::string> names = parameterNames(*instance);
   for (const SceneListing& scene : builtinScenes()) {
     const std::vector<std::string> reserved = parameterNames(*makeSimulation(scene.id));
@@ -148,11 +177,13 @@ PluginBuild buildOf(const Plugin<Algorithm>& plugin, const std::string& file) {
           .unoptimised = !plugin.optimised};
 }
 
-/// Calls add(entry) for each entry of a plug-in.
+/// Calls add(entry) for each entry of a plug-in. Throws InputError if it has none.
 template <class Entry, class Add>
-void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add) {
+void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, std::string_view kind,
+                  Add add) {
   try {
     std::vector<Entry> entries = plugin.entries();
+    if (entries.empty()) throw InputError(fmt::format("--plugin: {}: has no {}s", file, kind));
     for (Entry& entry : entries) add(entry);
   } catch (const InputError&) {
     throw;
@@ -177,10 +208,13 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
     const auto* plugin = exportOf<Algorithm>(file, kAlgorithmPluginSymbol);
     if (plugin == nullptr) continue;
     const PluginBuild build = buildOf(*plugin, file);
-    forEachEntry(*plugin, file, [&](Algorithm& algorithm) {
+    constexpr std::string_view kKind = "algorithm";
+    forEachEntry(*plugin, file, kKind, [&](Algorithm& algorithm) {
       const Algorithm* other = findAlgorithm(algorithm.id, algorithms);
-      requireValid(file, "algorithm", algorithm.id, algorithm.create && algorithm.create(),
+      const auto instance = instanceOf(file, kKind, algorithm.id, algorithm.create);
+      requireValid(file, kKind, algorithm.id, instance != nullptr,
                    other == nullptr ? nullptr : &other->plugin);
+      requireValidParameters(file, kKind, algorithm.id, *instance);
       algorithm.plugin = file;
       algorithm.plugin_build = build;
       algorithms.push_back(std::move(algorithm));
@@ -189,11 +223,12 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
   return algorithms;
 }
 
-void addEnginesOf(const std::vector<std::string>& plugins) {
+void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds) {
+  if (!plugins.empty()) guardEngines(limit_seconds);
   for (const std::string& file : plugins) {
     const auto* plugin = exportOf<scenes::EngineEntry>(file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;
-    forEachEntry(*plugin, file, [&](scenes::EngineEntry& engine) {
+    forEachEntry(*plugin, file, "engine", [&](scenes::EngineEntry& engine) {
       requireValid(engine, file);
       engine.listing.plugin = file;
       scenes::addEngine(std::move(engine));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "request/plugin_guard.h"
 
 namespace broadmark {
 
@@ -22,12 +23,14 @@ std::vector<SdkPlugin> sdkPlugins();
 
 /// Returns the built-in algorithms, then those of these libraries (see broadmark/plugin.h), which
 /// stay loaded until the program ends. Throws InputError for a file that is not such a library, was
-/// built with other headers, or has an algorithm with an invalid or duplicate id.
+/// built with other headers, has no algorithm, or one with an invalid or duplicate id, two
+/// parameters with one name, or a default out of range.
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins);
 
 /// Adds the engines of these libraries to the available ones (see broadmark/scenes/engine_plugin.h)
 /// for the rest of the process. Throws InputError like availableAlgorithms(), and for an engine
-/// with a parameter that a scene also has.
-void addEnginesOf(const std::vector<std::string>& plugins);
+/// with a parameter that a scene also has. A crash in one then ends the process with a message, as
+/// does a frame longer than `limit_seconds`.
+void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds = kNoEngineLimit);
 
 }  // namespace broadmark

@@ -11,6 +11,11 @@ bool RepetitionRule::isEnough(const CaseResult& result) const {
   if (!options_.until_precise || done < RepetitionOptions::kMinUntilPrecise) return false;
   const std::chrono::duration<double> passed = Clock::now() - start_;
   if (passed.count() >= options_.max_seconds) return true;
+  return isPrecise(result);
+}
+
+bool RepetitionRule::isPrecise(const CaseResult& result) const {
+  if (!options_.until_precise) return true;
   const Summary summary = result.summary();
   return summary.ci95 &&
          summary.ci95->high - summary.ci95->low <= options_.precision * summary.seconds_per_frame;

@@ -33,6 +33,8 @@ class RepetitionRule {
   explicit RepetitionRule(const RepetitionOptions& options) : options_(options) {}
 
   [[nodiscard]] bool isEnough(const CaseResult& result) const;
+  /// Whether the precision is reached, or not requested.
+  [[nodiscard]] bool isPrecise(const CaseResult& result) const;
   /// Number of repetitions that make a finished case complete.
   [[nodiscard]] int expected(const CaseResult& result) const;
 

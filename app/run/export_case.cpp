@@ -9,6 +9,7 @@
 #include "broadmark/fuzz/shrink.h"
 #include "run/plan.h"
 #include "run/recordings.h"
+#include "run/wrong_pairs.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
 #include "support/words.h"
@@ -100,6 +101,9 @@ int runExportCase(Plan plan, const fs::path& file, bool quiet) {
 
   writeSelection(file, *recording, shrunk.part);
   progress.print(summaryOf(shrunk, whole));
+  if (std::string boxes = smallPartText(*recording, shrunk.part); !boxes.empty()) {
+    progress.print(boxes + "  " + wrongPairsText(shrunk.difference));
+  }
   progress.print("written: " + file.string());
   progress.print(reproducingCommand(test_case, file));
   if (!shrunk.minimal) throw Interrupted("the smallest recording so far is written");

@@ -3,14 +3,17 @@
 #include "run/headless.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iostream>
 #include <map>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "broadmark/names.h"
 #include "run/plan_run.h"
 #include "run/recordings.h"
+#include "run/wrong_pairs.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/output.h"
@@ -31,6 +34,7 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
   void onRecordingResults(const PlanEntry& entry, std::span<const CaseResult> results) override {
     end();
     if (!prints_results_) std::cout << formatTable(results) << std::endl;
+    if (request_.print_pairs) printPairs(results);
     if (!entry.original) return;
     const fs::path log = entry.original->output_log;
     writeTextFile(log, formatOriginalLog(*entry.original, results.front()));
@@ -63,6 +67,19 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
   }
 
  private:
+  void printPairs(std::span<const CaseResult> results) {
+    for (const CaseResult& result : results) {
+      for (const FrameDifference& difference : result.differences) {
+        if (!difference.isMismatch()) continue;
+        fmt::print(
+            prints_results_ ? stderr : stdout, "{}: {}frame {}: {}\n", result.id,
+            difference.repetition == 0 ? "" : fmt::format("repetition {}, ", difference.repetition),
+            difference.frame, wrongPairsText(difference));
+      }
+    }
+    std::fflush(stdout);
+  }
+
   void draw(IndexedFrames& recording, Oracle& oracle, const fs::path& path) {
     try {
       const SceneInfo& scene = recording.scene();
@@ -121,10 +138,26 @@ void requireWritable(const Plan& plan) {
   }
 }
 
+/// Throws InputError if this processor lacks the instruction sets of all cases.
+void requireSupportedIsa(const Plan& plan) {
+  for (const PlanEntry& entry : plan.entries) {
+    for (const Case& test_case : entry.cases) {
+      if (!test_case.algorithm.traits.vectorised || isaSupported(test_case.isa)) return;
+    }
+  }
+  std::vector<std::string_view> supported;
+  for (const Isa isa : supportedIsas()) supported.push_back(isaName(isa));
+  throw InputError(
+      fmt::format("--isa: {}: not supported by this processor, and all cases need it; "
+                  "choose auto or one of: {}",
+                  isaName(plan.entries.front().cases.front().isa), fmt::join(supported, ", ")));
+}
+
 }  // namespace
 
 int runHeadless(Plan plan, bool quiet) {
   if (plan.entries.empty()) throw InputError("no cases left to run after --filter and --shard");
+  requireSupportedIsa(plan);
   requireWritable(plan);
   if (!plan.request.record.empty()) makeDirectory(plan.request.record);
   for (const PlanEntry& entry : plan.entries) {

@@ -153,6 +153,7 @@ class PlanRun {
         CaseResult& result = planned.result;
         if (result.status != Status::ok || rule.isEnough(result)) {
           result.conditions.repetitions = rule.expected(result);
+          if (result.status == Status::ok && !rule.isPrecise(result)) warnImprecise(result);
           finish(planned);
           steps += steps_of_pass * (passes - 1 - pass);
         }
@@ -161,6 +162,21 @@ class PlanRun {
       }
     }
     return true;
+  }
+
+  /// Adds a warning to a case whose mean is not precise. It is printed after the results.
+  void warnImprecise(CaseResult& result) {
+    const Summary summary = result.summary();
+    const auto percent = [](double share) { return fmt::format("{:.3g} %", 100 * share); };
+    const std::string width =
+        summary.ci95 ? percent((summary.ci95->high - summary.ci95->low) / summary.seconds_per_frame)
+                     : "unknown";
+    const std::string warning =
+        fmt::format("--precision {} not reached: the mean's 95 % interval is {} wide after {}",
+                    percent(request_.repetitions.precision), width,
+                    counted(result.repetitions.size(), "repetition"));
+    result.conditions.warnings.push_back(warning);
+    later_warnings_.push_back(fmt::format("{}: {}", result.id, warning));
   }
 
   /// Runs a repetition of a case unless it is skipped. Returns false when cancelled.
@@ -201,6 +217,9 @@ class PlanRun {
     }
     if (done.empty()) return;
     observer_.onRecordingResults(entry, done);
+    for (const std::string& warning : std::exchange(later_warnings_, {})) {
+      RunWarnings::print(warning);
+    }
     std::ranges::move(done, std::back_inserter(results_.cases));
     files_.rewrite(results_);
   }
@@ -227,6 +246,7 @@ class PlanRun {
   RunObserver& observer_;
   Results results_;
   RunWarnings warnings_;
+  std::vector<std::string> later_warnings_;
   ResultFiles files_;
   TimedOutVariants timed_out_;
   std::vector<PlannedCase> cases_;  ///< of the current recording

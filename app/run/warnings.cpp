@@ -19,11 +19,13 @@ RunWarnings::RunWarnings(const Environment& environment)
 std::vector<std::string> RunWarnings::warningsFor(const Case& test_case) {
   std::vector<std::string> warnings = noiseWarnings(environment_, machine_, test_case);
   for (const std::string& warning : warnings) {
-    if (shown_.insert(warning).second) {
-      std::cerr << fmt::format("broadmark: warning: {}\n", warning);
-    }
+    if (shown_.insert(warning).second) print(warning);
   }
   return warnings;
+}
+
+void RunWarnings::print(const std::string& warning) {
+  std::cerr << fmt::format("broadmark: warning: {}\n", warning);
 }
 
 }  // namespace broadmark

@@ -22,6 +22,9 @@ class RunWarnings {
   /// Returns the warnings that concern a case, and prints those not printed yet.
   std::vector<std::string> warningsFor(const Case& test_case);
 
+  /// Prints a warning.
+  static void print(const std::string& warning);
+
  private:
   const Environment& environment_;
   MachineState machine_;

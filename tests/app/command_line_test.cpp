@@ -63,7 +63,7 @@ TEST(Session, ListsMayBeDividedByCommasAndRepeated) {
   const SessionOptions options =
       session({"--objects", "30,10", "--objects", "20,10", "--object-type", "cubes,spheres",
                "--algorithm", "bf,,sap*", "--algorithm", "KD", "--threads", "4,1", "--isa",
-               "sse2,auto", "--recorder", "posrot,aabbs,posrot"});
+               "sse2,auto", "--recorder", "posrot,aabbs,posrot", "--record", "directory"});
   EXPECT_THAT(options.scene.objects, ElementsAre(10, 20, 30)) << "ascending, each once";
   EXPECT_THAT(options.scene.object_types, ElementsAre("cubes", "spheres"));
   EXPECT_THAT(options.cases.algorithms, ElementsAre("bf", "sap*", "KD"));
@@ -292,7 +292,7 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
        {Arguments{"--repetitions", "2"}, Arguments{"--warmup", "2"}, Arguments{"--check", "off"},
         Arguments{"--time-limit", "1"}, Arguments{"--record", "d"}, Arguments{"--shard", "0/2"},
         Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--allow-timeout"},
-        Arguments{"--recorder", "aabbs"}, Arguments{"--json", "j"}, Arguments{"--csv", "c"},
+        Arguments{"--print-pairs"}, Arguments{"--json", "j"}, Arguments{"--csv", "c"},
         Arguments{"--csv-frames", "c"}}) {
     Arguments window = {"freefall"};
     window.insert(window.end(), lost.begin(), lost.end());
@@ -303,7 +303,8 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
   for (const Arguments& lost :
        {Arguments{"--screenshot", "s.png"}, Arguments{"--size", "2x2"}, Arguments{"--gl", "egl"}}) {
     expectRefused({"freefall", lost[0], lost[1]}, {lost[0], "--headless"});
-    EXPECT_TRUE(parseSession({"freefall", lost[0], lost[1], "--headless", "--ui"}).inspector());
+    EXPECT_TRUE(parseSession({"freefall", lost[0], lost[1], "--headless", "--ui", "--script", "s"})
+                    .inspector());
   }
   EXPECT_EQ(parseSession({"freefall", "--frame", "7"}).frame, 7U);
   expectRefused({"freefall", "brownian"}, {"'brownian'", "one source"});

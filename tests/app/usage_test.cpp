@@ -14,7 +14,9 @@
 #include "broadmark/files.h"
 #include "commands/command_line.h"
 #include "engine/helpers.h"
+#include "request/reading_options.h"
 #include "support/places.h"
+#include "support/words.h"
 
 namespace broadmark::tests {
 namespace {
@@ -33,7 +35,7 @@ std::string printedBy(const std::vector<std::string>& arguments) {
 /// The option names at the beginning of the lines of --help-all, without dashes.
 std::set<std::string> shownOptions() {
   const std::string help = printedBy({"--help-all"});
-  const std::regex option(R"((^|\n) +(-h,)?--([a-z][a-z-]*))");
+  const std::regex option(R"((^|\n) +(-[a-z], )?--([a-z][a-z-]*))");
   std::set<std::string> names;
   for (std::sregex_iterator found(help.begin(), help.end(), option), end; found != end; ++found) {
     names.insert((*found)[3]);
@@ -97,6 +99,73 @@ TEST(Usage, OfTheManual) {
   }
   EXPECT_THAT(manual, HasSubstr(".TP\n130\ninterrupted"));
   EXPECT_THAT(manual, HasSubstr(".TP\n\\fB\\-\\-json\\fR \\fIFILE\\fR\nresults as JSON"));
+  EXPECT_THAT(manual, HasSubstr("\\fBImports\\fR\n.TP\n\\fB\\-\\-swept"));
+  EXPECT_THAT(manual, HasSubstr("\nbroadmark bake \\-\\-"));
+}
+
+// Reading options add themselves to a group, whichever command has them.
+TEST(Usage, OptionsAreInGroups) {
+  ReadingOptions reading;
+  for (const std::string& name : parameterNames(reading)) {
+    for (const std::string& command : {"", "import", "verify", "duel"}) {
+      const std::string help =
+          printedBy(command.empty() ? std::vector<std::string>{"--help"}
+                                    : std::vector{command, std::string("--help")});
+      const auto group = help.find("\nImports:\n");
+      const std::string option = "\n  " + parameterOption(name);
+      ASSERT_NE(group, help.npos) << command;
+      EXPECT_GT(help.find(option), group) << command << option;
+      EXPECT_LT(help.find(option), help.find("\n\n", group)) << command << option;
+    }
+  }
+  const std::string help = printedBy({"--help"});
+  std::size_t before = 0;
+  for (const char* heading : {"What to open", "Algorithms", "How to measure", "Results", "Pictures",
+                              "Imports", "Options", "Commands", "Examples"}) {
+    const auto position = help.find(std::string("\n\n") + heading + ":\n");
+    ASSERT_NE(position, help.npos) << heading;
+    EXPECT_GT(position, before) << heading;
+    before = position;
+  }
+  EXPECT_THAT(help, testing::Not(HasSubstr("worker ")));
+}
+
+// The first "broadmark" is the program.
+TEST(Usage, EveryCommandHasTwoExamplesThatParse) {
+  const std::regex heading(R"(\nUsage: broadmark)");
+  const std::string help = printedBy({"--help-all"});
+  const std::regex example(R"(\n  broadmark ([^\n]*))");
+  int examples = 0;
+  for (std::sregex_iterator found(help.begin(), help.end(), example), end; found != end; ++found) {
+    std::vector<std::string> arguments;
+    for (std::string word : splitAt(' ', (*found)[1].str())) {
+      if (word == ">" || word == "|") break;
+      std::erase(word, '\'');
+      arguments.push_back(word);
+    }
+    EXPECT_NO_THROW(parseCommandLine(arguments)) << (*found)[1];
+    ++examples;
+  }
+  const auto commands = std::distance(std::sregex_iterator(help.begin(), help.end(), heading), {});
+  EXPECT_GT(commands, 10);
+  EXPECT_EQ(examples, 2 * commands);
+}
+
+TEST(Usage, HelpFitsTheWidth) {
+  for (const std::size_t width : {50, 80, 132}) {
+    ::setenv("COLUMNS", std::to_string(width).c_str(), 1);
+    std::size_t longest = 0;
+    for (const std::string& line : splitAt('\n', printedBy({"--help-all"}))) {
+      const auto characters =
+          std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; });
+      // Names and examples are never broken.
+      const bool is_description = line.starts_with("      ");
+      if (is_description) longest = std::max(longest, static_cast<std::size_t>(characters));
+    }
+    EXPECT_LE(longest, width);
+    EXPECT_GT(longest, width - 15) << "and uses it";
+  }
+  ::unsetenv("COLUMNS");
 }
 
 /// Bash's completions of the last of these words.
@@ -124,6 +193,16 @@ TEST(Usage, BashCompletes) {
   EXPECT_EQ(completedByBash(script, "broadmark bake --sce"), "--scenes\n");
   EXPECT_EQ(completedByBash(script, "broadmark bake --csv"), "\n") << "no option of bake";
   EXPECT_EQ(completedByBash(script, "broadmark bake fi"), "\n") << "files are left to bash";
+  EXPECT_EQ(completedByBash(script, "broadmark --isa av"), "avx2 avx512\n");
+  EXPECT_EQ(completedByBash(script, "broadmark --isa scalar,ss"), "scalar,sse2\n");
+  EXPECT_EQ(completedByBash(script, "broadmark --isa = ss"), "sse2\n");
+  EXPECT_EQ(completedByBash(script, "broadmark --algorithm kd,sap-simd-"), "kd,sap-simd-mt\n");
+  EXPECT_EQ(completedByBash(script, "broadmark bake --engine bul"), "bullet\n");
+  EXPECT_EQ(completedByBash(script, "broadmark bake --scenes gravity,expl"), "gravity,explosion\n");
+  EXPECT_EQ(completedByBash(script, "broadmark --headless brow"), "brownian\n");
+  EXPECT_EQ(completedByBash(script, "broadmark list eng"), "engines\n");
+  EXPECT_EQ(completedByBash(script, "broadmark --headless x --check ha"), "hash\n");
+  EXPECT_EQ(completedByBash(script, "broadmark wor"), "world worlds\n") << "not the worker";
 }
 
 TEST(Usage, OfAnUnknownShell) {

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "broadmark/harness/case.h"
 #include "e2e/end_to_end.h"
+#include "engine/helpers.h"
 #include "parts.h"
 
 namespace broadmark::tests {
@@ -54,6 +56,53 @@ TEST_F(BadInput, UnknownNamesAreSuggested) {
   expectRefusal({"verfy", "a.aabbs"}, {"'verify'"});
 }
 
+TEST_F(BadInput, WhatLooksLikeAnOptionOrACommandIsNoHelp) {
+  expectRefusal({"-headless", "nosuchscene", "--nonsense"}, {"'-headless'", "'--headless'"});
+  expectRefusal({"bake", "-hard-limit", "5"}, {"'-hard-limit'", "'--hard-limit'"});
+  expectRefusal({"torure", "--minutes", "1"}, {"'torure'", "'torture'"});
+}
+
+TEST_F(BadInput, OptionsWithoutEffect) {
+  expectRunRefused({"--recorder", "aabbs"}, {"--recorder", "--record"});
+  expectRunRefused({"--print-pairs", "--check", "off"}, {"--print-pairs", "--check off"});
+  if (parts::kRenderer.included) {
+    expectRunRefused({"--frame", "2"}, {"--frame", "--screenshot"});
+    expectRunRefused({"--size", "20x20"}, {"--size", "--screenshot"});
+  }
+  if (!parts::kInspector.included) return;
+  expectRunRefused({"--script", "a.txt"}, {"--script", "--ui"});
+  expectRefusal({"freefall", "--ui"}, {"--ui", "--headless"});
+  expectRefusal({"freefall", "--ui", "--headless"}, {"--ui", "--screenshot", "--script"});
+}
+
+TEST_F(BadInput, AnInstructionSetThatIsNotHere) {
+  const std::string isa = isaSupported(Isa::neon) ? "avx2" : "neon";
+  const Arguments call = {"--headless", "freefall", "--objects", "20", "--frames",
+                          "3",          "--quiet",  "--isa",     isa,  "--algorithm"};
+  Arguments all_need_it = call;
+  all_need_it.emplace_back("sap-simd,kd-simd");
+  expectRefusal(all_need_it, {"--isa", isa, "not supported"});
+  Arguments some_do = call;
+  some_do.emplace_back("sap-simd,sap");
+  EXPECT_EQ(run(some_do).status, 0);
+}
+
+TEST_F(BadInput, AMemoryLimitBelowThatOfAnEmptyProcess) {
+  if (tests::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+  expectRunRefused({"--memory-limit", "0.001"}, {"--memory-limit", "0.001 GiB", "worker process"});
+}
+
+TEST_F(BadInput, PercentagesWithoutASign) {
+  const auto compare = [](const std::string& share) {
+    return Arguments{"compare", "a.json", "b.json", "--fail-above", share};
+  };
+  expectRefusal(compare("30"), {"--fail-above", "'30'", "30%"});
+  expectRefusal(compare("1"), {"--fail-above", "'1'", "1%", "100%"});
+  for (const char* share : {"30%", "0.3"}) {
+    EXPECT_THAT(run(compare(share)).err, HasSubstr("a.json")) << "accepted, but there is no file";
+  }
+}
+
 TEST_F(BadInput, NumbersOutOfRange) {
   expectRunRefused({"--repetitions", "0"}, {"--repetitions", "'0'"});
   expectRunRefused({"--objects", "50000000"}, {"objects", "'50000000'"});
@@ -67,7 +116,8 @@ TEST_F(BadInput, NumbersOutOfRange) {
   expectRunRefused({"--seed", "-1"}, {"seed", "'-1'"});
   expectRunRefused({"--param", "friction=much"}, {"friction", "'much'"});
   for (const std::string frame : {"4", "abc"}) {
-    expectRunRefused({"--frame", frame}, {"--frame", frame});
+    if (!parts::kRenderer.included) break;
+    expectRunRefused({"--frame", frame, "--screenshot", "a.png"}, {"--frame", frame});
   }
 }
 
@@ -190,6 +240,7 @@ TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
   refused({"--record", "plain/folder"}, {"plain/folder", "directory"});
   refused({"--record", "recordings", "--json", "missing/file"}, {"missing/file"});
   expectRefusal({"bake", "--output", "plain/folder"}, {"plain/folder", "directory"});
+  expectRefusal({"bake", "--output", "/proc/folder"}, {"/proc/folder", "cannot create"});
 }
 
 TEST_F(BadInput, OneFileForTwoThings) {

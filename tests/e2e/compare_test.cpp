@@ -80,8 +80,12 @@ TEST_F(Compare, ACaseThatBecameWrongIsARegression) {
   EXPECT_EQ(better.status, 0);
   EXPECT_THAT(better.out, HasSubstr("mismatch -> ok"));
   const ProgramResult neither = run({"compare", "after.json", "after.json"});
-  EXPECT_EQ(neither.status, 0);
+  EXPECT_EQ(neither.status, 1);
   EXPECT_THAT(neither.out, HasSubstr("mismatch in both"));
+  for (const char* format : {"--github", "--junit"}) {
+    EXPECT_THAT(run({"compare", "before.json", "after.json", format, "-"}).out,
+                HasSubstr("frame 1: 1 missed"));
+  }
 }
 
 TEST_F(Compare, OtherRecordingsAreNotComparable) {

@@ -1,6 +1,8 @@
 // A failed case: found by a run, reopened from its results, shrunk to a minimal recording, and
 // reproduced by the printed command in a separate process.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "broadmark/recordings/recording.h"
@@ -50,6 +52,24 @@ class FailedCase : public EndToEnd {
   }
 };
 
+TEST_F(FailedCase, PrintsItsWrongPairs) {
+  const ProgramResult ended =
+      run({"--headless", "brownian", "--objects", "200", "--frames", "60", "--engine", "kinematic",
+           "--plugin", places::faultyPlugin(), "--algorithm", "faulty,sap", "--quiet", "--json",
+           "results.json", "--print-pairs"});
+  EXPECT_EQ(ended.status, 1);
+  const Json differences = caseOf("faulty").at("differences");
+  ASSERT_FALSE(differences.empty());
+  for (const Json& difference : differences) {
+    if (difference.at("missed").empty()) continue;
+    const Json& pair = difference.at("missed").at(0);
+    EXPECT_THAT(ended.out, HasSubstr(fmt::format("/faulty: frame {}: missed {}-{}",
+                                                 difference.at("frame").get<int>(),
+                                                 pair.at(0).get<int>(), pair.at(1).get<int>())));
+  }
+  EXPECT_THAT(ended.out, Not(HasSubstr("/sap: frame")));
+}
+
 TEST_F(FailedCase, IsShrunkAndShownByACommand) {
   simulateFaulty();
   for (const std::string algorithm : {"faulty", "faulty-extra"}) {
@@ -58,6 +78,7 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
     const ProgramResult ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
     ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
     EXPECT_EQ(ended.err, "");
+    EXPECT_THAT(ended.out, HasSubstr("  frame 0, body 0: ("));
 
     RecordingReader reader(file(recording));
     EXPECT_EQ(reader.scene().name, "Brownian case");
@@ -65,17 +86,19 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
     EXPECT_LE(reader.scene().frames, 2U);
 
     const auto lines = linesOf(ended.out);
-    ASSERT_EQ(lines.size(), 3U) << ended.out;
+    ASSERT_GT(lines.size(), 5U) << ended.out;
     EXPECT_THAT(lines[0], HasSubstr(algorithm == "faulty" ? "3 bodies, " : "2 bodies, "));
     EXPECT_THAT(lines[0], HasSubstr(" of 200 bodies, 60 frames ("));
-    EXPECT_EQ(lines[1], "written: " + recording);
-    EXPECT_THAT(lines[2], StartsWith("broadmark --headless 'it'\\''s a "));
+    EXPECT_THAT(lines[lines.size() - 3],
+                StartsWith(algorithm == "faulty" ? "  missed " : "  false "));
+    EXPECT_EQ(lines[lines.size() - 2], "written: " + recording);
+    EXPECT_THAT(lines.back(), StartsWith("broadmark --headless 'it'\\''s a "));
     for (const std::string& word :
          {"--algorithm " + algorithm + " ", std::string("--param fat_margin=0.5 "),
           std::string("--check full"), std::string("--plugin ")}) {
-      EXPECT_THAT(lines[2], HasSubstr(word));
+      EXPECT_THAT(lines.back(), HasSubstr(word));
     }
-    EXPECT_EQ(shell(lines[2] + " --json shown.json"), 1) << readFile(file("shell.out"));
+    EXPECT_EQ(shell(lines.back() + " --json shown.json"), 1) << readFile(file("shell.out"));
     EXPECT_EQ(caseOf(algorithm, "shown.json").at("status"), "mismatch");
   }
 }

@@ -30,12 +30,14 @@ std::size_t longestLine(const std::string& text) {
   return longest;
 }
 
-/// The first words of the lines below a heading.
-std::vector<std::string> entriesOf(const std::string& help, const std::string& heading) {
+/// The first words of the entries below a heading; without one, the options below all.
+std::vector<std::string> entriesOf(const std::string& help, const std::string& heading = {}) {
   std::vector<std::string> entries;
-  std::istringstream lines(help.substr(help.find(heading) + heading.size() + 1));
-  for (std::string line; std::getline(lines, line) && !line.empty();) {
-    if (line.starts_with("  ") && line[2] != ' ') {
+  std::istringstream lines(help.substr(help.find("\n" + heading)));
+  std::string line;
+  if (!heading.empty()) std::getline(lines >> std::ws, line);
+  while (std::getline(lines, line) && (heading.empty() || !line.empty())) {
+    if (line.starts_with("  ") && line[2] != ' ' && (!heading.empty() || line[2] == '-')) {
       entries.push_back(line.substr(2, line.find(' ', 2) - 2));
     }
   }
@@ -45,13 +47,13 @@ std::vector<std::string> entriesOf(const std::string& help, const std::string& h
 TEST_F(Help, OfAllHasThatOfEveryCommand) {
   const ProgramResult help = run({"--help"});
   expectWords(help, {"Usage: broadmark ", "Exit status"});
-  std::vector<std::string> all = entriesOf(help.out, "Options:");
-  const std::vector<std::string> commands = entriesOf(help.out, "Subcommands:");
+  std::vector<std::string> all = entriesOf(help.out);
+  const std::vector<std::string> commands = entriesOf(help.out, "Commands:");
   EXPECT_FALSE(commands.empty());
   for (const std::string& command : commands) {
     const ProgramResult of_command = run({command, "--help"});
     expectWords(of_command, {"Usage: broadmark " + command});
-    for (const std::string& option : entriesOf(of_command.out, "Options:")) all.push_back(option);
+    for (const std::string& option : entriesOf(of_command.out)) all.push_back(option);
   }
   expectWords(run({"--help-all"}), all);
 }

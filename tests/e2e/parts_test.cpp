@@ -30,8 +30,9 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
   for (const Shown& shown : all) {
     const ProgramResult ended = run(shown.call);
     EXPECT_EQ(ended.status, 0) << ended.err;
+    const std::string text = onOneLine(ended.out);
     for (const std::string& word : shown.words) {
-      EXPECT_EQ(ended.out.find(word) != std::string::npos, shown.part.included) << word;
+      EXPECT_EQ(text.find(word) != std::string::npos, shown.part.included) << word;
     }
   }
 }

@@ -139,6 +139,74 @@ TEST_F(EnginePlugin, RefusesWhatDoesNotFit) {
       {"drift", "-1", "100"});
 }
 
+TEST_F(EnginePlugin, AFailureIsAClearError) {
+  const Arguments run = {"--headless",
+                         "freefall",
+                         "--objects",
+                         "5",
+                         "--frames",
+                         "3",
+                         "--algorithm",
+                         "sap",
+                         "--quiet",
+                         "--plugin",
+                         places::unrulyEngine(),
+                         "--engine",
+                         "unruly",
+                         "--param"};
+  const Arguments bake = {"bake",     "--scenes", "freefall", "--objects",
+                          "5",        "--frames", "3",        "--output",
+                          "out",      "--quiet",  "--plugin", places::unrulyEngine(),
+                          "--engine", "unruly",   "--param"};
+  for (const auto& [deed, word] :
+       std::map<std::string, std::string>{{"throw", "thrown on purpose"},
+                                          {"throw-number", "unknown type"},
+                                          {"crash", "segmentation fault"},
+                                          {"abort", "aborted"}}) {
+    for (Arguments call : {run, bake}) {
+      call.push_back("engine_deed=" + deed);
+      const ProgramResult ended = this->run(call);
+      EXPECT_EQ(ended.status, 2) << deed << ended.out;
+      EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+      for (const std::string& expected :
+           {std::string("engine 'unruly'"), std::string("frame 2"), word}) {
+        EXPECT_THAT(ended.err, HasSubstr(expected));
+      }
+    }
+  }
+}
+
+TEST_F(EnginePlugin, AHangEndsAtTheLimitOrByOneSignal) {
+  Arguments call = {"bake",     "--scenes", "freefall", "--objects",
+                    "5",        "--frames", "3",        "--output",
+                    "out",      "--quiet",  "--plugin", places::unrulyEngine(),
+                    "--engine", "unruly",   "--param",  "engine_deed=hang"};
+  Program program(directory_, call);
+  ASSERT_TRUE(program.waitForText("hanging on purpose"));
+  program.signal(SIGTERM);
+  const ProgramResult signalled = program.wait();
+  EXPECT_EQ(signalled.status, 130);
+  EXPECT_THAT(signalled.err, HasSubstr("engine 'unruly'"));
+
+  call.insert(call.end(), {"--hard-limit", "0.2"});
+  const ProgramResult late = run(call);
+  EXPECT_EQ(late.status, 2);
+  EXPECT_THAT(late.err, HasSubstr("no answer within 0.2 s"));
+}
+
+TEST_F(Plugin, InvalidAlgorithmsAreRefused) {
+  for (const auto& [fault, words] : std::map<std::string, std::vector<std::string>>{
+           {"empty", {"has no algorithms"}},
+           {"twice", {"'invalid'", "two parameters 'cells'"}},
+           {"range", {"'invalid'", "default", "cells", "11"}},
+           {"choice", {"'invalid'", "default", "mode", "'absent'"}},
+           {"crash", {"'invalid'", "crashed"}}}) {
+    const ProgramEnvironment around{.environment = {{"INVALID_PLUGIN", fault}}};
+    expectRefusal({"list", "algorithms", "--plugin", places::invalidPlugin()}, words, around);
+  }
+  EXPECT_EQ(run({"list", "algorithms", "--plugin", places::invalidPlugin()}).status, 0);
+}
+
 TEST_F(Plugin, BadFilesAreRefused) {
   const auto expect_refused = [&](const std::string& path, const std::vector<std::string>& words) {
     expectRefusal({"list", "--plugin", path}, words);

@@ -376,6 +376,26 @@ TEST_F(Run, WarnsOnceOfWhatDisturbsTimes) {
   }
 }
 
+TEST_F(Run, SaysWhichMeansAreNotPrecise) {
+  const auto imprecise = [&](const std::string& precision) {
+    const ProgramResult ended =
+        run({"--headless", "freefall", "--objects", "20", "--frames", "5", "--algorithm", "sap,bf",
+             "--repetitions", "auto", "--precision", precision, "--max-seconds", "0.001", "--quiet",
+             "--json", "results.json"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const auto tells = [](const std::string& warning) {
+      return warning.find("not reached") != std::string::npos;
+    };
+    for (const Json& result : cases()) {
+      const auto own = result.at("conditions").at("warnings").get<std::vector<std::string>>();
+      EXPECT_EQ(std::ranges::count_if(own, tells), precision == "0.0001%" ? 1 : 0);
+    }
+    return std::ranges::count_if(ended.warnings, tells);
+  };
+  EXPECT_EQ(imprecise("0.0001%"), 2);
+  EXPECT_EQ(imprecise("100000%"), 0);
+}
+
 TEST_F(Run, CountsOfTheProcessorAreThereOrNull) {
   for (const Arguments& where : {Arguments{}, Arguments{"--in-process"}}) {
     Arguments call = {"--algorithm", "bf", "--repetitions", "2"};

@@ -41,6 +41,10 @@ TEST_F(Torture, ShrinksWrongAnswersAndShowsThemByACommand) {
     EXPECT_LE(fault->at("bodies"), 3);
     const std::string command = fault->at("command");
     EXPECT_THAT(ended.out, HasSubstr(command));
+    for (const char* text : {"body 0: (", "wrong pair: "}) {
+      EXPECT_THAT(fault->at("boxes").get<std::string>(), HasSubstr(text));
+    }
+    EXPECT_THAT(ended.out, HasSubstr(fault->at("boxes").get<std::string>()));
     EXPECT_EQ(shell(command), 1) << readFile(file("shell.out"));
   }
   // The number of reproducers per algorithm and fault kind is limited.

@@ -8,6 +8,8 @@ std::filesystem::path source(const std::string& path) {
 std::string program() { return PROGRAM; }
 std::string faultyPlugin() { return FAULTY_PLUGIN; }
 std::string unrulyPlugin() { return UNRULY_PLUGIN; }
+std::string unrulyEngine() { return UNRULY_ENGINE; }
+std::string invalidPlugin() { return INVALID_PLUGIN; }
 std::string enginePlugin() { return ENGINE_PLUGIN; }
 std::string foreignPlugin() { return FOREIGN_PLUGIN; }
 std::string faultInjection() { return FAULT_INJECTION; }

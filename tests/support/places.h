@@ -16,6 +16,10 @@ std::string faultyPlugin();
 std::string unrulyPlugin();
 /// A plug-in with a physics engine, `drift`.
 std::string enginePlugin();
+/// A plug-in with a physics engine, `unruly`, that crashes, hangs or throws on request.
+std::string unrulyEngine();
+/// A plug-in with an algorithm that is refused for the fault named by INVALID_PLUGIN.
+std::string invalidPlugin();
 /// A plug-in built for another version.
 std::string foreignPlugin();
 /// A library that makes system calls under the program fail; "" in builds with sanitizers.

@@ -88,7 +88,16 @@ class Server {
   Json setCase(const Json& message) {
     started_ = false;
     executor_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
-    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>(), /*permanent=*/true);
+    const auto limit = message.at("memory_limit_bytes").get<std::uint64_t>();
+    // Sanitizers reserve more than the machine has, and cannot be limited.
+    const std::uint64_t used = statusBytes("VmData").value_or(0);
+    if (limit != 0 && limit < used && used < machineMemory()) {
+      constexpr double kGibibyte = 1 << 30;
+      throw InputError(fmt::format(
+          "--memory-limit: {:.3g} GiB: a worker process takes {:.3g} GiB before it runs a case",
+          static_cast<double>(limit) / kGibibyte, static_cast<double>(used) / kGibibyte));
+    }
+    limitMemory(limit, /*permanent=*/true);
     return Json::object();
   }
 
