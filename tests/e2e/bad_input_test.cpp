@@ -80,7 +80,7 @@ TEST_F(BadInput, AnInstructionSetThatIsNotHere) {
   const Arguments call = {"--headless", "freefall", "--objects", "20", "--frames",
                           "3",          "--quiet",  "--isa",     isa,  "--algorithm"};
   Arguments all_need_it = call;
-  all_need_it.emplace_back("sap-simd,kd-simd");
+  all_need_it.emplace_back("sap-simd,bf-simd");
   expectRefusal(all_need_it, {"--isa", isa, "not supported"});
   Arguments some_do = call;
   some_do.emplace_back("sap-simd,sap");
