@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -17,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Minimum number of rounds.
+/// Minimum number of rounds of a plain verdict.
 constexpr std::size_t kMinRounds = 60;
 /// Growth of the number of rounds between reviews: intervals narrow with its square root.
 constexpr double kReviewGrowth = 1.3;
@@ -49,11 +48,24 @@ std::vector<DuelRank> ranking(const DuelResult& result) {
   return ranking;
 }
 
+/// Whether more rounds could hardly change the verdict on this ratio, which is that of a side to a
+/// faster one.
+bool isPlain(const Estimate& ratio, const DuelOptions& options, double margin) {
+  constexpr double kShareOfDifference = 25;
+  const auto& [value, interval] = ratio;
+  const double width = std::log(interval.high / interval.low);
+  return width <=
+             options.precision * std::max(1.0, kShareOfDifference * std::abs(std::log(value))) ||
+         verdictOn(interval, margin) == Verdict::same || interval.low > 1 + options.limit;
+}
+
 class Duel {
  public:
   Duel(const std::vector<DuelSide>& sides, const DuelOptions& options)
       : options_(options), order_(sides.size()), random_(options.seed) {
     std::iota(order_.begin(), order_.end(), 0);
+    result_.margin = 2 * options.precision;
+    result_.error_rate = options.error_rate;
     RunPolicy policy = RunPolicy::unlimited(options.check);
     for (const DuelSide& side : sides) {
       runs_.push_back(
@@ -67,10 +79,10 @@ class Duel {
       runPass(frames, first);
       for (const auto& case_run : runs_) case_run->stopChecking();
       if (frames.scene().frames == 0) ended_ = true;
+      if (result_.ok() && result_.rounds() > 0) review();
     }
     for (const auto& case_run : runs_) case_run->stop();
     result_.seconds = elapsed();
-    result_.margin = 2 * options_.precision;
     if (result_.ok() && result_.rounds() > 0) result_.ranking = ranking(result_);
     return std::move(result_);
   }
@@ -80,20 +92,17 @@ class Duel {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
 
-  /// Calls act(side) in random order; ends the duel if act returns false.
+  /// Calls act(side) in random order; ends the duel if act returns false for any side.
   template <class Action>
   void runInRandomOrder(Action&& action) {
     std::ranges::shuffle(order_, random_);
     for (const std::size_t side : order_) {
       if (options_.cancelled && options_.cancelled()) throw Cancelled();
-      if (!action(side)) return fail(side);
+      if (action(side)) continue;
+      ended_ = true;
+      result_.sides[side].status = runs_[side]->status();
+      result_.sides[side].reason = runs_[side]->reason();
     }
-  }
-
-  void fail(std::size_t side) {
-    ended_ = true;
-    result_.sides[side].status = runs_[side]->status();
-    result_.sides[side].reason = runs_[side]->reason();
   }
 
   void runPass(FrameSource& frames, bool checked) {
@@ -104,7 +113,7 @@ class Duel {
       if (!frame) return;
       runRound(*frame);
       if (!ended_ && checked) check(*frame);
-      if (!ended_) evaluate();
+      if (!ended_) countRound();
     }
   }
 
@@ -130,26 +139,28 @@ class Duel {
     });
   }
 
-  /// Decides whether to end the duel.
-  void evaluate() {
-    const std::size_t rounds = result_.rounds();
+  void countRound() {
     result_.seconds = elapsed();
     if (options_.progress) options_.progress(result_);
-    const bool time_is_up = result_.seconds >= options_.max_seconds;
-    if (rounds < next_review_ && !time_is_up) return;
-    next_review_ = static_cast<std::size_t>(static_cast<double>(rounds) * kReviewGrowth) + 1;
-    const bool narrow = rounds >= kMinRounds && isNarrow();
-    // Twice in a row: a single narrow interval may be chance.
-    result_.decided = std::exchange(was_narrow_, narrow) && narrow;
-    ended_ = result_.decided || time_is_up;
+    ended_ = result_.seconds >= options_.max_seconds;
   }
 
-  /// Whether the ratio of every side to the next faster one is precise enough.
-  [[nodiscard]] bool isNarrow() const {
+  /// Decides whether to end the duel. Its end is the last review.
+  void review() {
+    const std::size_t rounds = result_.rounds();
+    if (rounds < next_review_ && !ended_) return;
+    next_review_ = static_cast<std::size_t>(static_cast<double>(rounds) * kReviewGrowth) + 1;
+    const auto number = static_cast<double>(++reviews_);
+    result_.error_rate = options_.error_rate / (number * (number + 1));
+    result_.decided = rounds >= kMinRounds && isDecided();
+    ended_ |= result_.decided;
+  }
+
+  /// Whether the verdict on every side and the next faster one is plain.
+  [[nodiscard]] bool isDecided() const {
     const std::vector<std::size_t> sides = fastestFirst(result_);
     for (std::size_t i = 1; i < sides.size(); ++i) {
-      const Interval ratio = result_.ratio(sides[i], sides[i - 1]).ci95;
-      if (ratio.high - ratio.low > options_.precision * ratio.low) return false;
+      if (!isPlain(result_.ratio(sides[i], sides[i - 1]), options_, result_.margin)) return false;
     }
     return true;
   }
@@ -162,7 +173,7 @@ class Duel {
   DuelResult result_;
   Clock::time_point begin_ = Clock::now();
   std::size_t next_review_ = kMinRounds;
-  bool was_narrow_ = false;
+  std::size_t reviews_ = 0;
   bool ended_ = false;
 };
 
@@ -181,9 +192,7 @@ std::vector<double> DuelResult::ratios(std::size_t a, std::size_t b) const {
 Estimate DuelResult::ratio(std::size_t a, std::size_t b) const {
   std::vector<double> logarithms = ratios(a, b);
   for (double& ratio : logarithms) ratio = std::log(ratio);
-  const auto [median, interval] = medianOfSeries(logarithms);
-  // The range of five values contains the median in only 94 of 100 cases.
-  if (rounds() <= 5) return {std::exp(median), {0, std::numeric_limits<double>::infinity()}};
+  const auto [median, interval] = medianOfSeries(logarithms, error_rate);
   return {std::exp(median), {std::exp(interval.low), std::exp(interval.high)}};
 }
 

@@ -115,7 +115,7 @@ double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRu
   const std::vector<const PassTimes*> b = passesOf(after);
   if (a.size() < 2 || b.size() < 2) return 0;
   const auto degrees = static_cast<double>(a.size() + b.size() - 2);
-  return studentT975(degrees) *
+  return studentT(0.05, degrees) *
          std::sqrt(varianceOfLogMean(a, frames) + varianceOfLogMean(b, frames));
 }
 
@@ -129,7 +129,7 @@ double baselineSpread(std::span<const TimedRun> before, std::size_t frames) {
     levels.push_back(logMeanMinimum(passes, all, frames));
   }
   const auto runs = static_cast<double>(levels.size());
-  return studentT975(runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
+  return studentT(0.05, runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
 }
 
 /// Noise between frames: the log half-width of the interval of the sums' ratio.
@@ -220,7 +220,7 @@ class IsolatedRatios {
     }
     if (deviations.size() < kMinOthers) return std::nullopt;
     constexpr double kSigmas = 1.4826;  // for a normal distribution, from the median deviation
-    return studentT975(static_cast<double>(deviations.size() - 1)) * kSigmas *
+    return studentT(0.05, static_cast<double>(deviations.size() - 1)) * kSigmas *
            quantile(deviations, 0.5);
   }
 

@@ -3,8 +3,8 @@
 #include "broadmark/statistics/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -56,6 +56,41 @@ std::size_t minBlockLength(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(2 * std::cbrt(static_cast<double>(count))));
 }
 
+/// Continued fraction of the incomplete beta function, by the modified Lentz method. Converges
+/// quickly for x < (a + 1) / (a + b + 2).
+double betaFraction(double a, double b, double x) {
+  constexpr double kTiny = 1e-300;
+  constexpr double kPrecision = 1e-15;
+  constexpr int kMaxTerms = 10'000;
+  const auto apart_from_zero = [](double value) { return value == 0 ? kTiny : value; };
+  double c = 1;
+  double d = 1 / apart_from_zero(1 - (a + b) * x / (a + 1));
+  double fraction = d;
+  for (int m = 1; m < kMaxTerms; ++m) {
+    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+    for (const double term : {even, odd}) {
+      d = 1 / apart_from_zero(1 + term * d);
+      c = apart_from_zero(1 + term / c);
+      fraction *= c * d;
+    }
+    if (std::abs(c * d - 1) < kPrecision) break;
+  }
+  return fraction;
+}
+
+/// Regularised incomplete beta function I_x(a, b); `y` is 1 - x, which may be too small to
+/// subtract.
+double incompleteBeta(double a, double b, double x, double y) {
+  if (x > (a + 1) / (a + b + 2)) return 1 - incompleteBeta(b, a, y, x);
+  if (x <= 0) return 0;
+  // std::lgamma() sets a global variable.
+  int sign = 0;
+  const double log_front = ::lgamma_r(a + b, &sign) - ::lgamma_r(a, &sign) - ::lgamma_r(b, &sign) +
+                           a * std::log(x) + b * std::log(y);
+  return std::exp(log_front) * betaFraction(a, b, x) / a;
+}
+
 /// +1 for each value above the median, -1 below: these signs determine the median's variance.
 std::vector<double> signsAroundMedian(std::span<const double> values, double median) {
   std::vector<double> signs(values.size());
@@ -63,6 +98,18 @@ std::vector<double> signsAroundMedian(std::span<const double> values, double med
     return static_cast<double>(value > median) - static_cast<double>(value < median);
   });
   return signs;
+}
+
+/// Variance of the sum of a series with mean 0, per value, from all circular blocks of it.
+double longRunVariance(std::span<const double> values, std::size_t block) {
+  double sum =
+      std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(block), 0.0);
+  double squares = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    squares += sum * sum;
+    sum += values[(i + block) % values.size()] - values[i];
+  }
+  return squares / static_cast<double>(values.size() * block);
 }
 
 }  // namespace
@@ -84,29 +131,22 @@ double quantile(std::span<const double> values, double q) {
   return sortedQuantile(sortedCopy(values), q);
 }
 
-double studentT975(double degrees) {
-  // Exact to the digits given; in between and beyond, interpolated in 1/degrees, in which the
-  // quantile is nearly linear and convex, so never too small: at most 3 % too large below 1.5
-  // degrees, 0.6 % up to 3, 0.15 % up to 6, 0.02 % from 10 on.
-  struct Row {
-    double degrees, t;
+double studentT(double error_rate, double degrees) {
+  // The quantile hardly changes beyond, and the incomplete beta function loses its digits.
+  constexpr double kMaxDegrees = 1e6;
+  degrees = std::clamp(degrees, 1.0, kMaxDegrees);
+  const auto beyond = [&](double t) {  // the probability of a larger absolute value
+    return incompleteBeta(degrees / 2, 0.5, degrees / (degrees + t * t), t * t / (degrees + t * t));
   };
-  static constexpr std::array kTable = {Row{1, 12.7062},    Row{1.25, 8.02795}, Row{1.5, 6.01666},
-                                        Row{1.75, 4.94885}, Row{2, 4.30265},    Row{2.5, 3.57465},
-                                        Row{3, 3.18245},    Row{3.5, 2.94009},  Row{4, 2.77645},
-                                        Row{5, 2.57058},    Row{6, 2.44691},    Row{7, 2.36462},
-                                        Row{8, 2.30600},    Row{9, 2.26216},    Row{10, 2.22814},
-                                        Row{12, 2.17881},   Row{15, 2.13145},   Row{20, 2.08596},
-                                        Row{30, 2.04227},   Row{60, 2.00030},   Row{120, 1.97993}};
-  constexpr double kNormal = 1.95996;
-  if (degrees <= 1) return kTable.front().t;
-  for (std::size_t i = 1; i < kTable.size(); ++i) {
-    if (degrees > kTable[i].degrees) continue;
-    const auto [d0, t0] = kTable[i - 1];
-    const auto [d1, t1] = kTable[i];
-    return std::lerp(t0, t1, (1 / d0 - 1 / degrees) / (1 / d0 - 1 / d1));
+  double low = 0;
+  double high = 1;
+  while (beyond(high) > error_rate) high *= 2;
+  constexpr int kBisections = 60;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = std::midpoint(low, high);
+    (beyond(middle) > error_rate ? low : high) = middle;
   }
-  return std::lerp(kNormal, kTable.back().t, kTable.back().degrees / degrees);
+  return high;
 }
 
 std::size_t blockLength(std::span<const double> values) {
@@ -154,30 +194,32 @@ Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
   }
   // Few blocks underestimate the variance, as few values do (Student).
   const double blocks = static_cast<double>(count) / static_cast<double>(block);
-  const double factor = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
+  const double factor = studentT(0.05, blocks - 1) / 1.96;
   return {estimate + factor * (quantile(resampled, 0.025) - estimate),
           estimate + factor * (quantile(resampled, 0.975) - estimate)};
 }
 
-Estimate medianOfSeries(std::span<const double> values) {
-  const double median = quantile(values, 0.5);
-  const std::size_t block = safeBlockLength(signsAroundMedian(values, median));
-  std::vector<double> sample(values.size());
-  const auto median_of = [&](std::span<const std::size_t> drawn) {
-    std::ranges::transform(drawn, sample.begin(), [&](std::size_t index) { return values[index]; });
-    const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-    std::ranges::nth_element(sample, middle);
-    if (sample.size() % 2 == 1) return *middle;
-    return std::midpoint(*std::max_element(sample.begin(), middle), *middle);
-  };
-  const Interval interval = blockBootstrap95(values.size(), block, median, median_of);
-  return {median, {std::min(interval.low, median), std::max(interval.high, median)}};
+Estimate medianOfSeries(std::span<const double> values, double error_rate) {
+  const std::vector<double> sorted = sortedCopy(values);
+  const double median = sortedQuantile(sorted, 0.5);
+  const std::vector<double> signs = signsAroundMedian(values, median);
+  const std::size_t block = std::min(safeBlockLength(signs), values.size());
+  const auto count = static_cast<double>(values.size());
+  const double variance = std::max(longRunVariance(signs, block), 1.0);
+  // Overlapping blocks have 1.5 times the degrees of freedom of separate ones.
+  const double degrees = 1.5 * (count / static_cast<double>(block) - 1);
+  const double half = studentT(error_rate, degrees) * std::sqrt(variance / count) / 2;
+  if (half >= 0.5) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {median, {-kInfinity, kInfinity}};
+  }
+  return {median, {sortedQuantile(sorted, 0.5 - half), sortedQuantile(sorted, 0.5 + half)}};
 }
 
 std::optional<Interval> confidence95(std::span<const double> values) {
   if (values.size() < 2) return std::nullopt;
-  const double half =
-      studentT975(static_cast<double>(values.size() - 1)) * std::sqrt(squaredStandardError(values));
+  const double half = studentT(0.05, static_cast<double>(values.size() - 1)) *
+                      std::sqrt(squaredStandardError(values));
   const double centre = mean(values);
   return Interval{centre - half, centre + half};
 }

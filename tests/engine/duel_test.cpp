@@ -48,7 +48,7 @@ class TimedHost final : public CaseExecutor {
 };
 
 /// A duel of algorithms with these times.
-DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, double precision) {
+DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, DuelOptions options) {
   const auto machine = std::make_shared<UnevenMachine>(seed);
   std::vector<DuelSide> sides;
   for (const double time : seconds) {
@@ -58,7 +58,38 @@ DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, double prec
          }});
   }
   ChainSource frames(4, 50);
-  return runDuel(sides, frames, {.precision = precision, .seed = seed, .check = CheckMode::off});
+  options.seed = seed;
+  options.check = CheckMode::off;
+  options.max_seconds = 3600;
+  return runDuel(sides, frames, options);
+}
+
+/// Duels of the second of two algorithms against the first.
+struct Outcomes {
+  double claims = 0;  ///< share of duels that claim a difference
+  double beyond = 0;  ///< share of those that claim one with a ratio beyond the limit
+  double same = 0;    ///< share of those that find both the same
+  double rounds = 0;  ///< mean
+};
+Outcomes outcomesOf(double ratio, int duels, const DuelOptions& options) {
+  Outcomes outcomes;
+  const double share = 1.0 / duels;
+  for (int seed = 0; seed < duels; ++seed) {
+    const DuelResult result = duelOf({1e-4, 1e-4 * ratio}, static_cast<unsigned>(seed), options);
+    EXPECT_TRUE(result.decided);
+    const Estimate found = result.ratio(1, 0);
+    const Verdict verdict = verdictOn(found.ci95, result.margin);
+    const bool claims = verdict == Verdict::faster || verdict == Verdict::slower;
+    outcomes.claims += claims ? share : 0;
+    outcomes.beyond += claims && found.value > 1 + options.limit ? share : 0;
+    outcomes.same += verdict == Verdict::same ? share : 0;
+    outcomes.rounds += static_cast<double>(result.rounds()) * share;
+  }
+  return outcomes;
+}
+
+DuelOptions withLimit(double error_rate = 0.05) {
+  return {.limit = 0.05, .error_rate = error_rate};
 }
 
 TEST(Verdict, IsSameOnlyWithinTheMargin) {
@@ -79,7 +110,7 @@ DuelResult resultOf(const std::vector<double>& first, const std::vector<double>&
 TEST(Duel, AnIntervalContainsItsEstimateAndIsOfPositiveNumbers) {
   std::mt19937 random(1);
   std::lognormal_distribution<double> wild(0, 3);
-  for (std::size_t rounds = 6; rounds < 40; ++rounds) {
+  for (std::size_t rounds = 20; rounds < 60; ++rounds) {
     std::vector<double> seconds(rounds);
     for (double& time : seconds) time = wild(random);
     const auto [ratio, interval] = resultOf(std::vector<double>(rounds, 1), seconds).ratio(1, 0);
@@ -89,38 +120,50 @@ TEST(Duel, AnIntervalContainsItsEstimateAndIsOfPositiveNumbers) {
   }
 }
 
-TEST(Duel, FiveRoundsAreTooFewForAnInterval) {
+TEST(Duel, AFewRoundsAreTooFewForAnInterval) {
   const Interval none = resultOf({1, 1, 1, 1, 1}, {2, 2, 2, 2, 2}).ratio(1, 0).ci95;
   EXPECT_EQ(none.low, 0);
   EXPECT_EQ(verdictOn(none, 0.02), Verdict::undecided);
 }
 
 TEST(Duel, ClaimsNoDifferenceWhereThereIsNone) {
-  int claims = 0;
-  constexpr int kDuels = 60;
-  for (int seed = 0; seed < kDuels; ++seed) {
-    const DuelResult result = duelOf({1e-4, 1e-4}, static_cast<unsigned>(seed), 0.02);
-    EXPECT_TRUE(result.decided);
-    const Verdict verdict = verdictOn(result.ratio(1, 0).ci95, 0.02);
-    claims += verdict == Verdict::faster || verdict == Verdict::slower ? 1 : 0;
-  }
-  EXPECT_LE(claims, kDuels / 20);
+  const Outcomes outcomes = outcomesOf(1, 2000, withLimit());
+  EXPECT_LE(outcomes.claims, 0.05);
+  EXPECT_LE(outcomes.beyond, 0.001);
+  EXPECT_GE(outcomes.same, 0.95);
 }
 
-TEST(Duel, FindsADifferenceOfTenPercent) {
-  int found = 0;
-  constexpr int kDuels = 40;
-  for (int seed = 0; seed < kDuels; ++seed) {
-    const DuelResult result = duelOf({1e-4, 1.1e-4}, static_cast<unsigned>(seed), 0.02);
-    const Estimate ratio = result.ratio(1, 0);
-    EXPECT_NEAR(ratio.value, 1.1, 0.025);
-    found += verdictOn(ratio.ci95, 0.02) == Verdict::slower ? 1 : 0;
+// As a suite of twenty cases would ask for.
+TEST(Duel, ClaimsNoDifferenceMoreOftenThanAskedFor) {
+  EXPECT_LE(outcomesOf(1, 2000, withLimit(0.05 / 20)).claims, 0.0025);
+}
+
+TEST(Duel, FindsTrueDifferences) {
+  EXPECT_GE(outcomesOf(1.05, 200, withLimit()).claims, 0.95);
+  const Outcomes of_ten_percent = outcomesOf(1.1, 200, withLimit());
+  EXPECT_GE(of_ten_percent.claims, 0.99);
+  EXPECT_GE(of_ten_percent.beyond, 0.99);
+  const Outcomes faster = outcomesOf(1 / 1.1, 200, withLimit());
+  EXPECT_GE(faster.claims, 0.99);
+  EXPECT_EQ(faster.beyond, 0);
+}
+
+TEST(Duel, EndsEarlyWhenTheVerdictIsPlain) {
+  EXPECT_LE(outcomesOf(1.5, 50, withLimit()).rounds, 100);
+  EXPECT_LE(outcomesOf(1 / 1.5, 50, withLimit()).rounds, 100);
+  EXPECT_LE(outcomesOf(4, 50, {}).rounds, 100) << "without a limit";
+  EXPECT_GT(outcomesOf(1.04, 50, withLimit()).rounds, 200);
+}
+
+TEST(Duel, IsReviewedAfterWholePasses) {
+  for (const double ratio : {1.0, 1.1, 2.0}) {
+    EXPECT_EQ(duelOf({1e-4, 1e-4 * ratio}, 1, withLimit()).rounds() % 50, 0U);
   }
-  EXPECT_GE(found, kDuels * 9 / 10);
 }
 
 TEST(Duel, RanksWithTies) {
-  const std::vector<DuelRank> ranking = duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, 0.03).ranking;
+  const std::vector<DuelRank> ranking =
+      duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, {.precision = 0.03}).ranking;
   std::vector<std::size_t> numbers;
   for (const DuelRank& rank : ranking) numbers.push_back(rank.rank);
   EXPECT_THAT(numbers, ElementsAre(1, 2, 2, 4));
@@ -137,6 +180,13 @@ TEST(Duel, EndsAtOnceWhenASideIsWrong) {
   EXPECT_EQ(result.sides[0].status, Status::ok);
   EXPECT_EQ(result.sides[1].status, Status::mismatch);
   EXPECT_THAT(result.sides[1].reason, HasSubstr("frame 3"));
+}
+
+TEST(Duel, NamesAllSidesThatAreWrong) {
+  ChainSource frames;
+  const Case wrong = spoilingAnswer([](std::vector<Pair>& answer) { answer.pop_back(); });
+  const DuelResult result = runDuel({{"one", wrong}, {"other", wrong}}, frames, {});
+  for (const DuelResult::Side& side : result.sides) EXPECT_EQ(side.status, Status::mismatch);
 }
 
 }  // namespace

@@ -58,21 +58,30 @@ TEST(Statistics, StudentQuantiles) {
       {14, 2.14479},  {17, 2.10982},   {19, 2.09302},  {25, 2.05954},  {29, 2.04523},
       {40, 2.02108},  {50, 2.00856},   {80, 1.99006},  {100, 1.98397}, {200, 1.97190},
       {500, 1.96472}, {1000, 1.96234}, {1e6, 1.95997}, {1e12, 1.95996}};
-  for (const auto& [degrees, t] : known) EXPECT_NEAR(studentT975(degrees), t, 1e-3) << degrees;
+  for (const auto& [degrees, t] : known) EXPECT_NEAR(studentT(0.05, degrees), t, 1e-3) << degrees;
 }
 
 // Welch's degrees of freedom are no integers. Values by numerical integration of the density.
 TEST(Statistics, StudentQuantilesInBetween) {
   for (const auto& [degrees, t] : std::map<double, double>{
            {1.25, 8.02795}, {1.5, 6.01666}, {2.5, 3.57465}, {3.5, 2.94009}, {4.5, 2.65891}}) {
-    EXPECT_NEAR(studentT975(degrees), t, 2e-3 * t) << degrees;
+    EXPECT_NEAR(studentT(0.05, degrees), t, 2e-3 * t) << degrees;
   }
 }
 
+// As in R's qt(1 - error_rate / 2, degrees).
+TEST(Statistics, StudentQuantilesOfSmallErrorRates) {
+  EXPECT_NEAR(studentT(0.01, 5), 4.03214, 1e-4);
+  EXPECT_NEAR(studentT(0.001, 10), 4.58689, 1e-4);
+  EXPECT_NEAR(studentT(0.0001, 30), 4.48204, 1e-2);
+  EXPECT_NEAR(studentT(0.5, 1), 1, 1e-4);
+  EXPECT_NEAR(studentT(0.0027, 1e9), 2.99998, 1e-3);
+}
+
 TEST(Statistics, StudentQuantilesFallWithDegrees) {
-  double last = studentT975(1);
+  double last = studentT(0.05, 1);
   for (double degrees = 1.1; degrees < 300; degrees *= 1.05) {
-    const double t = studentT975(degrees);
+    const double t = studentT(0.05, degrees);
     EXPECT_LT(t, last) << degrees;
     last = t;
   }
@@ -148,24 +157,30 @@ Values seriesOf(std::size_t count, double correlation, unsigned seed) {
   return series;
 }
 
-TEST(MedianOfSeries, OfOneValueIsThatValue) {
-  const Values single = {3};
-  const Estimate estimate = medianOfSeries(single);
-  EXPECT_EQ(estimate.value, 3);
-  EXPECT_EQ(estimate.ci95.low, 3);
-  EXPECT_EQ(estimate.ci95.high, 3);
+TEST(MedianOfSeries, OfFewValuesHasNoInterval) {
+  for (std::size_t count = 1; count < 12; ++count) {
+    const Estimate estimate = medianOfSeries(seriesOf(count, 0, 1));
+    EXPECT_TRUE(std::isfinite(estimate.value));
+    EXPECT_EQ(estimate.ci95.low, -INFINITY) << count;
+    EXPECT_EQ(estimate.ci95.high, INFINITY) << count;
+  }
+  EXPECT_TRUE(std::isfinite(medianOfSeries(seriesOf(20, 0, 1)).ci95.low));
 }
 
 TEST(MedianOfSeries, HoldsTheTrueMedianAsOftenAsItSays) {
-  constexpr int kSeries = 200;
-  for (const double correlation : {0.0, 0.6}) {
-    int misses = 0;
-    for (unsigned seed = 0; seed < kSeries; ++seed) {
-      const Interval interval = medianOfSeries(seriesOf(300, correlation, seed)).ci95;
-      misses += interval.low > 0 || interval.high < 0 ? 1 : 0;
+  constexpr int kSeries = 2000;
+  for (const double error_rate : {0.05, 0.005}) {
+    for (const double correlation : {0.0, 0.6}) {
+      int misses = 0;
+      for (unsigned seed = 0; seed < kSeries; ++seed) {
+        const Interval interval = medianOfSeries(seriesOf(300, correlation, seed), error_rate).ci95;
+        misses += interval.low > 0 || interval.high < 0 ? 1 : 0;
+      }
+      const double expected = error_rate * kSeries;
+      EXPECT_LE(misses, 1.5 * expected + 3 * std::sqrt(expected))
+          << error_rate << ' ' << correlation;
+      EXPECT_GT(misses, 0);
     }
-    // 5 %, plus three standard errors of that share.
-    EXPECT_LE(misses, kSeries / 10) << correlation;
   }
 }
 

@@ -16,25 +16,26 @@ double standardDeviation(std::span<const double> values);
 /// Quantile q in [0, 1] with linear interpolation between closest ranks (Hyndman & Fan type 7, the
 /// default of R and NumPy); 0 for no values.
 double quantile(std::span<const double> values, double q);
-/// Upper 97.5 % point of Student's t with `degrees` degrees of freedom (>= 1).
-double studentT975(double degrees);
+/// The value that Student's t exceeds in absolute value with probability `error_rate`. Fewer than 1
+/// degree of freedom count as 1.
+double studentT(double error_rate, double degrees);
 
 struct Interval {
   double low = 0;
   double high = 0;
 };
 
-/// An estimate and its 95 % confidence interval.
+/// An estimate and its confidence interval, of 95 % unless stated otherwise.
 struct Estimate {
   double value = 0;
   Interval ci95;
 };
 
 /// The median of a time series with correlated neighbours, such as the frames of a run. The
-/// interval is a percentile bootstrap of circular blocks (Politis and Romano, 1992), with the
-/// blockLength() of the signs around the median, but at least 2 n^(1/3); with few blocks it is
-/// widened by Student's t. Deterministic. Requires values.
-Estimate medianOfSeries(std::span<const double> values);
+/// interval inverts a sign test: it ends at two order statistics, further apart where signs around
+/// the median are correlated within safeBlockLength(). It misses the true median with probability
+/// `error_rate`, and is infinite for too few values. Requires values.
+Estimate medianOfSeries(std::span<const double> values, double error_rate = 0.05);
 /// The block length for resampling a series to estimate its mean: the rule of Politis and White
 /// (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of the series.
 std::size_t blockLength(std::span<const double> values);
