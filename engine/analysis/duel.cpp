@@ -92,29 +92,36 @@ class Duel {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
 
-  /// Calls act(side) in random order; ends the duel if act returns false for any side.
+  /// Calls act(side) for all sides in random order. A side drops out if act returns false.
   template <class Action>
   void runInRandomOrder(Action&& action) {
     std::ranges::shuffle(order_, random_);
     for (const std::size_t side : order_) {
       if (options_.cancelled && options_.cancelled()) throw Cancelled();
-      if (action(side)) continue;
-      ended_ = true;
+      if (result_.sides[side].status != Status::ok || action(side)) continue;
       result_.sides[side].status = runs_[side]->status();
       result_.sides[side].reason = runs_[side]->reason();
     }
   }
 
+  /// Whether a side is left that may still turn out to be wrong.
+  [[nodiscard]] bool isAnyLeft() const {
+    return std::ranges::any_of(
+        result_.sides, [](const DuelResult::Side& side) { return side.status == Status::ok; });
+  }
+
+  /// In the first pass, the answers of the other sides are checked even if one has dropped out.
   void runPass(FrameSource& frames, bool checked) {
     const Frame initial = frames.rewind();
     runInRandomOrder([&](std::size_t side) { return runs_[side]->start(frames.scene(), initial); });
-    while (!ended_) {
+    while (!ended_ && (result_.ok() || (checked && isAnyLeft()))) {
       const std::optional<Frame> frame = frames.next();
-      if (!frame) return;
+      if (!frame) break;
       runRound(*frame);
-      if (!ended_ && checked) check(*frame);
-      if (!ended_) countRound();
+      if (checked) check(*frame);
+      countRound();
     }
+    ended_ |= !result_.ok();
   }
 
   void runRound(const Frame& frame) {
@@ -126,7 +133,7 @@ class Duel {
       seconds[side] = static_cast<double>(ns) * 1e-9;
       return running;
     });
-    if (ended_) return;  // only complete rounds count
+    if (!result_.ok()) return;  // only complete rounds count
     for (std::size_t side = 0; side < seconds.size(); ++side) {
       result_.sides[side].seconds.push_back(seconds[side]);
     }

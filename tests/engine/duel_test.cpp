@@ -171,7 +171,7 @@ TEST(Duel, RanksWithTies) {
   EXPECT_EQ(ranking.back().side, 3U);
 }
 
-TEST(Duel, EndsAtOnceWhenASideIsWrong) {
+TEST(Duel, EndsAfterAPassInWhichASideIsWrong) {
   ChainSource frames;
   const Case wrong = spoilingAnswer([](std::vector<Pair>& answer) { answer.pop_back(); });
   const std::vector<DuelSide> sides = {{"right", caseOf()}, {"wrong", wrong}};
@@ -184,9 +184,16 @@ TEST(Duel, EndsAtOnceWhenASideIsWrong) {
 
 TEST(Duel, NamesAllSidesThatAreWrong) {
   ChainSource frames;
-  const Case wrong = spoilingAnswer([](std::vector<Pair>& answer) { answer.pop_back(); });
-  const DuelResult result = runDuel({{"one", wrong}, {"other", wrong}}, frames, {});
-  for (const DuelResult::Side& side : result.sides) EXPECT_EQ(side.status, Status::mismatch);
+  const auto wrong_in = [](std::uint32_t wrong_frame) {
+    return caseOf({.on_answer = [wrong_frame](std::uint32_t frame, std::vector<Pair>& answer) {
+      if (frame == wrong_frame) answer.pop_back();
+    }});
+  };
+  const DuelResult result =
+      runDuel({{"in frame 2", wrong_in(2)}, {"in frame 5", wrong_in(5)}}, frames, {});
+  for (const DuelResult::Side& side : result.sides) {
+    EXPECT_EQ(side.status, Status::mismatch) << side.name;
+  }
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ struct DuelResult {
 };
 
 /// Repeats passes over the frames, each with fresh instances, as often as necessary. Requires two
-/// or more sides. Ends early if some fail. Throws InputError, and Cancelled.
+/// or more sides. Ends after the first pass if some fail. Throws InputError, and Cancelled.
 DuelResult runDuel(const std::vector<DuelSide>& sides, FrameSource& frames, const DuelOptions&);
 
 }  // namespace broadmark
