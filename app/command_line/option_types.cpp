@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadmark/algorithms.h"
 #include "broadmark/scenes/registry.h"
 #include "command_line/usage.h"
 #include "request/former_names.h"
@@ -91,6 +92,36 @@ void parseSize(const std::string& text, PictureOptions& options) {
   options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMaxPixels));
 }
 
+/// Returns the thread counts in ascending order.
+std::vector<int> parseThreads(const std::vector<std::string>& texts) {
+  std::vector<int> threads;
+  for (const std::string& text : texts) threads.push_back(parseThreadCount(text));
+  std::ranges::sort(threads);
+  return threads;
+}
+
+std::vector<std::string> isaChoices() {
+  std::vector<std::string> choices = {"auto"};
+  for (const auto& entry : kIsas.entries) choices.emplace_back(entry.name);
+  return choices;
+}
+
+std::vector<Isa> parseIsas(const std::vector<std::string>& names) {
+  std::vector<Isa> isas;
+  for (const std::string& name : names) {
+    const auto isa = name == "auto" ? bestIsa() : kIsas.find(name);
+    if (!isa) throw InputError("--isa: " + unknownName("value", name, isaChoices()));
+    isas.push_back(*isa);
+  }
+  return isas;
+}
+
+std::string isaNames(const std::vector<Isa>& isas) {
+  std::vector<std::string_view> names;
+  for (const Isa isa : isas) names.push_back(isaName(isa));
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
 /// Joins values as the text of a list option.
 template <class List>
 std::string joined(const List& values) {
@@ -143,17 +174,21 @@ CLI::Option* addPositive(CLI::App& app, const std::string& name, const std::stri
       app, name, type, set, [&] { return fmt::format("{}", target); }, doc);
 }
 
+double parseShare(const std::string& text, std::string_view option, bool open) {
+  const bool percent = text.ends_with('%');
+  const std::string number = text.substr(0, text.size() - (percent ? 1 : 0));
+  const double value = parseNumber(number, option, 0, open);
+  if (!percent && value >= 1) {
+    throw InputError(
+        fmt::format("{0}: '{1}' is ambiguous: write {1}% or {2:g}%", option, number, 100 * value));
+  }
+  return value / (percent ? 100 : 1);
+}
+
 CLI::Option* addShare(CLI::App& app, const std::string& name, double& target, bool open,
                       const std::string& doc) {
   const auto set = [&target, name, open](const std::string& text) {
-    const bool percent = text.ends_with('%');
-    const std::string number = text.substr(0, text.size() - (percent ? 1 : 0));
-    const double value = parseNumber(number, name, 0, open);
-    if (!percent && value >= 1) {
-      throw InputError(
-          fmt::format("{0}: '{1}' is ambiguous: write {1}% or {2:g}%", name, number, 100 * value));
-    }
-    target = value / (percent ? 100 : 1);
+    target = parseShare(text, name, open);
   };
   return addValue(
       app, name, "SHARE", set, [&] { return fmt::format("{:.12g}%", 100 * target); }, doc);
@@ -278,6 +313,34 @@ CLI::Option* addAnswer(CLI::App& app, AnswerKind& answer) {
   return addNamed(app, "--answer", "KIND", answer, kAnswerKinds,
                   "what algorithms report for a frame: pairs: all pairs; events: pairs that began "
                   "or ended since the previous frame");
+}
+
+std::vector<CLI::Option*> addVariants(CLI::App& app, CaseOptions& cases) {
+  using Texts = std::vector<std::string>;
+  return {
+      suggestValues(
+          addList(
+              app, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
+              [&] { return joined(cases.algorithms); },
+              "algorithms: ids, families, patterns such as 'sap*', or all (default; self-checks "
+              "must be named)"),
+          algorithmIds(builtinAlgorithms())),
+      addList(
+          app, "--threads", "T[,T...]",
+          [&](const Texts& texts) { cases.threads = parseThreads(texts); },
+          [&] { return joined(cases.threads); },
+          "threads of parallel variants (default: all cores)"),
+      suggestValues(addList(
+                        app, "--isa", "ISA[,ISA...]",
+                        [&](const Texts& names) { cases.isas = parseIsas(names); },
+                        [&] { return isaNames(cases.isas); },
+                        fmt::format("instruction sets of vectorised variants: auto (default), {}",
+                                    fmt::join(kIsas.names(), ", "))),
+                    isaChoices())};
+}
+
+CLI::Option* addFilter(CLI::App& app, std::string& filter) {
+  return addText(app, "--filter", "REGEX", filter, "run only cases with a matching id");
 }
 
 CLI::Option* addDevice(CLI::App& app, std::string& device) {

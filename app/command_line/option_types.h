@@ -31,6 +31,9 @@ namespace broadmark {
 /// Parses a finite number >= `min`, or > `min` if `open`.
 double parseNumber(const std::string& text, std::string_view option, double min, bool open);
 
+/// Parses a share, "1%" or "0.01": > 0 or, unless `open`, >= 0.
+double parseShare(const std::string& text, std::string_view option, bool open);
+
 /// Returns the value called `text` in a NameTable.
 template <class Table>
 auto parseNamed(const std::string& text, std::string_view option, const Table& table) {
@@ -117,6 +120,10 @@ CLI::Option* addQuiet(CLI::App&, bool& quiet);
 CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
 /// --size and --gl. Help shows them only in builds with the renderer.
 std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
+/// Options that select variants: --algorithm, --threads, --isa
+std::vector<CLI::Option*> addVariants(CLI::App&, CaseOptions&);
+/// --filter
+CLI::Option* addFilter(CLI::App&, std::string& filter);
 /// --answer
 CLI::Option* addAnswer(CLI::App&, AnswerKind& answer);
 /// --device. Help shows it only in builds with OpenCL.

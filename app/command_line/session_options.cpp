@@ -45,36 +45,6 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-/// Returns the thread counts in ascending order.
-std::vector<int> parseThreads(const std::vector<std::string>& texts) {
-  std::vector<int> threads;
-  for (const std::string& text : texts) threads.push_back(parseThreadCount(text));
-  std::ranges::sort(threads);
-  return threads;
-}
-
-std::vector<std::string> isaChoices() {
-  std::vector<std::string> choices = {"auto"};
-  for (const auto& entry : kIsas.entries) choices.emplace_back(entry.name);
-  return choices;
-}
-
-std::vector<Isa> parseIsas(const std::vector<std::string>& names) {
-  std::vector<Isa> isas;
-  for (const std::string& name : names) {
-    const auto isa = name == "auto" ? bestIsa() : kIsas.find(name);
-    if (!isa) throw InputError("--isa: " + unknownName("value", name, isaChoices()));
-    isas.push_back(*isa);
-  }
-  return isas;
-}
-
-std::string isaNames(const std::vector<Isa>& isas) {
-  std::vector<std::string_view> names;
-  for (const Isa isa : isas) names.push_back(isaName(isa));
-  return fmt::format("{}", fmt::join(names, ","));
-}
-
 }  // namespace
 
 SessionParser::SessionParser(CLI::App& app) : app_(app) {
@@ -121,29 +91,10 @@ void SessionParser::addInvocation() {
 void SessionParser::addCases() {
   const HelpGroup group(app_, "Algorithms");
   CaseOptions& cases = options_.cases;
-  using Texts = std::vector<std::string>;
-  CLI::Option* algorithm = addList(
-      app_, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
-      [&] { return fmt::format("{}", fmt::join(cases.algorithms, ",")); },
-      "algorithms: ids, families, patterns such as 'sap*', or all (default; self-checks must be "
-      "named)");
-  tag(suggestValues(algorithm, algorithmIds(builtinAlgorithms())), kCase);
-  tag(addList(
-          app_, "--threads", "T[,T...]",
-          [&](const Texts& texts) { cases.threads = parseThreads(texts); },
-          [&] { return fmt::format("{}", fmt::join(cases.threads, ",")); },
-          "threads of parallel variants (default: all cores)"),
-      kCase);
-  CLI::Option* isa = addList(
-      app_, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
-      [&] { return isaNames(cases.isas); },
-      fmt::format("instruction sets of vectorised variants: auto (default), {}",
-                  fmt::join(kIsas.names(), ", ")));
-  tag(suggestValues(isa, isaChoices()), kCase);
+  for (const CLI::Option* option : addVariants(app_, cases)) tag(option, kCase);
   tag(addAnswer(app_, cases.answer), kCase);
   tag(addDevice(app_, cases.device), kCase);
-  tag(addText(app_, "--filter", "REGEX", options_.filter, "run only cases with a matching id"),
-      kCase | kInspector);
+  tag(addFilter(app_, options_.filter), kCase | kInspector);
   tag(addValue(
           app_, "--shard", "I/N",
           [&](const std::string& text) { options_.shard = parseShard(text); },

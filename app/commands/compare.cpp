@@ -8,10 +8,17 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "broadmark/harness/environment.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
+#include "commands/duel_series.h"
 #include "compare/comparison.h"
+#include "request/hosts.h"
+#include "request/plugins.h"
+#include "run/recordings.h"
+#include "sources/results.h"
 #include "support/exit_status.h"
+#include "support/interrupt.h"
 #include "support/output.h"
 
 namespace broadmark::commands::compare {
@@ -24,6 +31,11 @@ struct Options {
   std::vector<std::string> baselines;  ///< additional runs like `before`
   std::vector<fs::path> after;
   ComparisonOptions comparison;
+  bool settle = false;
+  fs::path program;                  ///< the build that ran A; "": this one
+  std::vector<std::string> plugins;  ///< of cases to settle
+  DuelOptions duel{.max_seconds = 5};
+  bool quiet = false;
   ResultPaths outputs;
 };
 
@@ -38,6 +50,80 @@ std::vector<fs::path> judgedFiles(const Options& options) {
   throw InputError("compare: needs two results files, or one with --by");
 }
 
+/// Settles undecided cases by duels.
+class Settling {
+ public:
+  Settling(const Options& options, const fs::path& after_file, Comparison& comparison)
+      : options_(options),
+        after_file_(after_file),
+        comparison_(comparison),
+        algorithms_(availableAlgorithms(options.plugins)),
+        duels_("settling", comparison.count(Verdict::undecided), options.duel, comparison.options,
+               options.quiet) {
+    HostOptions hosts;
+    make_executor_ = executorFactory(hosts);
+    hosts.program = options.program;
+    make_baseline_executor_ = executorFactory(hosts);
+  }
+
+  void run() {
+    bool settled_any = false;
+    for (CaseComparison& compared : comparison_.cases) {
+      if (compared.verdict != Verdict::undecided) continue;
+      try {
+        settle(compared);
+        settled_any = true;
+      } catch (const InputError& error) {
+        comparison_.notes.push_back(fmt::format("{}: not settled: {}", compared.id, error.what()));
+      }
+    }
+    if (!settled_any) return;
+    comparison_.notes.push_back(
+        fmt::format("settled by duels, A: {}; B: this program (version {})",
+                    options_.program.empty() ? "this program" : options_.program.string(),
+                    thisEnvironment().version));
+  }
+
+ private:
+  void settle(CaseComparison& compared) {
+    PlanEntry after = entryAt(*compared.after, after_file_);
+    CaseResult before = *compared.before;
+    before.recording = compared.after->recording;  // the same boxes, which are at hand
+    const std::string& hash = compared.after->recording.hash;
+    if (!recording_ || hash != recording_hash_) {
+      recording_ = openForCommand(after.source, options_.quiet);
+      recording_hash_ = hash;
+    }
+    const CaseComparison settled = duels_.run(
+        {before.id, entryAt(before, after_file_).cases.front(), make_baseline_executor_},
+        {compared.id, after.cases.front(), make_executor_}, *recording_, comparison_.notes);
+    compared.verdict = settled.verdict;
+    compared.status_before = settled.status_before;
+    compared.status_after = settled.status_after;
+    compared.reason = settled.reason;
+    compared.ratio = settled.ratio;
+    compared.by_duel = true;
+  }
+
+  /// The case with its recording. Throws InputError if that is not at hand.
+  PlanEntry entryAt(const CaseResult& result, const fs::path& file) const {
+    if (const std::string obstacle = obstacleTo(result, file, algorithms_); !obstacle.empty()) {
+      throw InputError(obstacle);
+    }
+    return entryOf(result, file, algorithms_);
+  }
+
+  const Options& options_;
+  const fs::path& after_file_;
+  Comparison& comparison_;
+  std::vector<Algorithm> algorithms_;
+  DuelSeries duels_;
+  ExecutorFactory make_executor_;
+  ExecutorFactory make_baseline_executor_;
+  std::unique_ptr<IndexedFrames> recording_;  ///< the last one
+  std::string recording_hash_;
+};
+
 void write(const Options& options, const Comparison& comparison) {
   for (const ComparisonWriter& writer : comparisonWriters()) {
     const auto path = options.outputs.find(std::string(writer.name));
@@ -45,31 +131,25 @@ void write(const Options& options, const Comparison& comparison) {
   }
 }
 
-/// Returns wrong_answer if a case of B is wrong, regression for any other failing case.
-int statusOf(const Comparison& comparison) {
-  int status = exit_status::success;
-  for (const CaseComparison& compared : comparison.cases) {
-    if (!comparison.fails(compared)) continue;
-    const bool wrong =
-        compared.status_after == Status::mismatch || compared.status_after == Status::error;
-    if (wrong) return exit_status::wrong_answer;
-    status = exit_status::regression;
-  }
-  return status;
-}
-
 int run(const Options& options) {
   const std::vector<fs::path> judged = judgedFiles(options);
   if (judged.size() > 1 && !options.outputs.empty()) {
     throw InputError("compare: output files need a single B");
   }
+  if (options.settle && options.program.empty() && options.comparison.by.empty()) {
+    throw InputError(
+        "compare: --settle: needs --baseline-program, the build of broadmark that ran A");
+  }
+  const InterruptGuard guard;
   std::vector<NamedResults> before = {readResults(options.before)};
   for (const std::string& path : options.baselines) before.push_back(readResults(path));
   const bool prints_output = std::ranges::any_of(
       options.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   int status = exit_status::success;
   for (const fs::path& path : judged) {
-    const Comparison comparison = compareResults(before, readResults(path), options.comparison);
+    const NamedResults after = readResults(path);
+    Comparison comparison = compareResults(before, after, options.comparison);
+    if (options.settle) Settling(options, path, comparison).run();
     if (judged.size() > 1) fmt::print("B = {}\n", path.string());
     if (!prints_output) fmt::print("{}", formatComparison(comparison));
     // An empty comparison must not look like a success.
@@ -78,7 +158,7 @@ int run(const Options& options) {
                                    options.before.string(), path.string()));
     }
     write(options, comparison);
-    const int found = statusOf(comparison);
+    const int found = comparison.exitStatus();
     if (status != exit_status::wrong_answer && found != exit_status::success) status = found;
   }
   return status;
@@ -102,6 +182,16 @@ std::function<int()> add(CLI::App& app) {
                  "compare cases that differ in this (algorithm, threads, isa or a parameter) with "
                  "the first such case of A, instead of each case with itself")
       ->type_name("NAME");
+  CLI::Option* settle = app.add_flag(
+      "--settle", options->settle,
+      "decide undecided cases by duels of --baseline-program and this program, which ran B");
+  addPath(app, "--baseline-program", "PROGRAM", options->program,
+          "for --settle: the build of broadmark that ran A")
+      ->needs(settle);
+  addPlugins(app, options->plugins, "algorithms, for --settle")->needs(settle);
+  addPositive(app, "--max-seconds", "S", options->duel.max_seconds,
+              "for --settle: end each duel after this many seconds")
+      ->needs(settle);
   app.add_flag("--allow-missing", comparison.allow_missing,
                "do not fail if cases of A are missing in B");
   app.add_flag("--any-conditions", comparison.any_conditions,
@@ -109,6 +199,7 @@ std::function<int()> add(CLI::App& app) {
   for (const ComparisonWriter& writer : comparisonWriters()) {
     addOutput(app, writer.name, options->outputs, writer.doc);
   }
+  addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }
 

@@ -1,16 +1,23 @@
-// broadmark duel: determines which of several variants is fastest, and by how much.
+// broadmark duel: determines which of several variants is fastest, and by how much; or which cases
+// of a suite became slower than in another build.
 
 #include "broadmark/analysis/duel.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "broadmark/error.h"
+#include "broadmark/harness/runner.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
+#include "commands/duel_series.h"
+#include "compare/comparison.h"
 #include "compare/duel_report.h"
 #include "request/cases.h"
 #include "request/hosts.h"
@@ -27,13 +34,43 @@
 namespace broadmark::commands::duel {
 namespace {
 
+constexpr double kMaxSeconds = 60;
+constexpr double kMaxSecondsOfCase = 10;  ///< in a suite
+
 struct Options : RunRequest {
+  std::vector<std::string> words;  ///< sources of a suite; else a source and variants
   std::vector<std::string> variants;
-  std::filesystem::path program;  ///< another build of this program; "": none
+  std::filesystem::path program;          ///< another build of this program; "": none
+  std::filesystem::path baseline_plugin;  ///< another build of a plug-in; "": none
   DuelOptions duel;
-  std::filesystem::path json;  ///< "": none
+  std::optional<double> max_seconds;
+  std::optional<double> fail_above;
+  bool fail_undecided = false;
   bool quiet = false;
+
+  [[nodiscard]] bool hasBaseline() const { return !program.empty() || !baseline_plugin.empty(); }
+  /// Whether cases are selected as in a run, on any number of sources.
+  [[nodiscard]] bool isSuite() const { return !cases.algorithms.empty() || words.size() == 1; }
+
+  [[nodiscard]] bool printsOutput() const {
+    return std::ranges::any_of(outputs,
+                               [](const auto& output) { return isStandardOutput(output.second); });
+  }
+  /// Without a limit, differences between variants are no regressions.
+  [[nodiscard]] ComparisonOptions comparison() const {
+    ComparisonOptions comparison;
+    const double default_limit =
+        hasBaseline() ? comparison.fail_above : std::numeric_limits<double>::infinity();
+    comparison.margin = 2 * duel.precision;
+    comparison.fail_above = fail_above.value_or(default_limit);
+    comparison.fail_undecided = fail_undecided;
+    return comparison;
+  }
 };
+
+constexpr const char* kTooFewSides =
+    "duel: needs at least two variants, or another build to compare with (--baseline-program, "
+    "--baseline-plugin)";
 
 /// Opens the source of the duel. Throws InputError unless the options name exactly one.
 Source open(const Options& options) {
@@ -61,11 +98,7 @@ std::vector<DuelSide> sidesOf(const Options& options) {
     hosts.program = options.program;
     add(hosts, fmt::format(" ({})", options.program.string()));
   }
-  if (sides.size() < 2) {
-    throw InputError(
-        "duel: needs at least two variants, or one and another build of this program "
-        "(--baseline-program)");
-  }
+  if (sides.size() < 2) throw InputError(kTooFewSides);
   return sides;
 }
 
@@ -77,6 +110,13 @@ int exitStatusOf(const DuelResult& result) {
   return status == exit_status::success && !result.ok() ? exit_status::bad_input : status;
 }
 
+/// Opens the recording of a source. Throws InputError if it has no frame to run.
+std::unique_ptr<IndexedFrames> openFrames(Source& source, const Options& options) {
+  auto recording = openForCommand(source, options.quiet);
+  if (recording->scene().frames > 0) return recording;
+  throw InputError(fmt::format("duel: {} has no frame to run", options.sources.front()));
+}
+
 /// Prints warnings about disturbances of any side's times.
 void printWarnings(const std::vector<DuelSide>& sides) {
   const Environment environment = thisEnvironment();
@@ -84,23 +124,28 @@ void printWarnings(const std::vector<DuelSide>& sides) {
   for (const DuelSide& side : sides) warnings.warningsFor(side.test_case);
 }
 
-int run(Options options) {
-  addEnginesOf(options.plugins, options.hosts.hard_limit_seconds);
-  if (!options.json.empty()) requireOutput(options.json);
-  const InterruptGuard guard;
+void writeComparison(const Options& options, const Comparison& comparison) {
+  for (const ComparisonWriter& writer : comparisonWriters()) {
+    const auto path = options.outputs.find(std::string(writer.name));
+    if (path != options.outputs.end()) writeOutput(path->second, writer.format(comparison));
+  }
+}
+
+/// A duel of several variants on one source, which ranks them.
+int runVariants(Options options) {
   const std::vector<DuelSide> sides = sidesOf(options);
   Source source = open(options);
-  const std::unique_ptr<IndexedFrames> recording = openForCommand(source, options.quiet);
-  if (recording->scene().frames == 0) {
-    throw InputError(fmt::format("duel: {} has no frame to run", options.sources.front()));
-  }
+  const std::unique_ptr<IndexedFrames> recording = openFrames(source, options);
   printWarnings(sides);
   constexpr double kTicks = 1000;
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
+  options.duel.max_seconds = options.max_seconds.value_or(kMaxSeconds);
+  options.duel.limit = options.fail_above.value_or(options.duel.limit);
   options.duel.cancelled = InterruptGuard::requested;
   options.duel.progress = [&](const DuelResult& now) {
+    if (!progress.isDue()) return;
     const double left = std::max(options.duel.max_seconds - now.seconds, 0.0);
-    progress.detail(counted(now.rounds(), "round"));
+    progress.detail(progressText(now));
     progress.update(
         static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.max_seconds)),
         left);
@@ -113,39 +158,240 @@ int run(Options options) {
     }
   }();
   progress.update(static_cast<std::uint64_t>(kTicks));
-  if (!isStandardOutput(options.json)) progress.print(formatDuel(result, recording->scene()));
-  if (!options.json.empty()) writeOutput(options.json, duelJson(result, source.reference));
-  return exitStatusOf(result);
+  if (!options.printsOutput()) progress.print(formatDuel(result, recording->scene()));
+  Comparison comparison{.command = "duel", .options = options.comparison()};
+  if (!options.fail_above) {
+    comparison.options.fail_above = std::numeric_limits<double>::infinity();
+  }
+  for (std::size_t side = 1; side < sides.size(); ++side) {
+    comparison.cases.push_back(compareSides(result, 0, side, comparison.options));
+  }
+  if (const auto json = options.outputs.extract("json")) {
+    writeOutput(json.mapped(), duelJson(result, source.reference));
+  }
+  writeComparison(options, comparison);
+  const int status = exitStatusOf(result);
+  return status == exit_status::success ? comparison.exitStatus() : status;
+}
+
+/// A suite: duels of all selected cases with their baselines, B against A.
+class Suite {
+ public:
+  explicit Suite(const Options& options)
+      : options_(options),
+        plan_(planOf(options)),
+        comparison_{.command = "duel", .options = options.comparison()},
+        make_executor_(executorFactory(options.hosts)) {
+    HostOptions hosts = options.hosts;
+    hosts.program = options.program;
+    make_baseline_executor_ = executorFactory(hosts);
+    if (!options.program.empty()) requireWorks(make_baseline_executor_);
+    if (!options.baseline_plugin.empty()) {
+      baseline_algorithms_ = availableAlgorithms({options.baseline_plugin.string()});
+    }
+    if (options.hasBaseline()) {
+      comparison_.notes.push_back(fmt::format(
+          "A: {}; B: this program{}", fmt::join(baselineNames(), ", "),
+          options.plugins.empty() ? "" : fmt::format(", {}", fmt::join(options.plugins, ", "))));
+    }
+  }
+
+  int run() {
+    std::size_t count = 0;
+    for (const PlanEntry& entry : plan_.entries) {
+      count += entry.cases.size() - (options_.hasBaseline() ? 0 : 1);
+    }
+    DuelOptions duel = options_.duel;
+    duel.max_seconds = options_.max_seconds.value_or(kMaxSecondsOfCase);
+    {
+      DuelSeries duels("duels", count, duel, comparison_.options, options_.quiet);
+      for (PlanEntry& entry : plan_.entries) runEntry(entry, duels);
+    }
+    if (!options_.printsOutput()) fmt::print("{}", formatComparison(comparison_));
+    if (!comparison_.comparable()) throw InputError("duel: A has none of the selected cases");
+    writeComparison(options_, comparison_);
+    return comparison_.exitStatus();
+  }
+
+ private:
+  static Plan planOf(const Options& options) {
+    Plan plan = makePlan(options, PlanUse::run);
+    const bool has_same_built_ins = !options.baseline_plugin.empty() && options.program.empty();
+    for (PlanEntry& entry : plan.entries) {
+      std::erase_if(entry.cases, [&](const Case& test_case) {
+        return has_same_built_ins && test_case.algorithm.plugin.empty();
+      });
+      if (!options.hasBaseline() && entry.cases.size() < 2) throw InputError(kTooFewSides);
+    }
+    std::erase_if(plan.entries, [](const PlanEntry& entry) { return entry.cases.empty(); });
+    if (plan.entries.empty()) {
+      throw InputError(has_same_built_ins ? "duel: no selected case is of a plug-in: add --plugin"
+                                          : "duel: no cases left to run after --filter");
+    }
+    return plan;
+  }
+
+  /// Throws InputError unless the program can run cases.
+  static void requireWorks(const ExecutorFactory& make_executor) {
+    CaseRun probe(caseNamed("none", {}), {}, make_executor);
+    static_cast<void>(probe.start(SceneInfo{}, Frame{0, {}, std::span<const std::uint32_t>()}));
+    if (probe.status() == Status::error) {
+      throw InputError("--baseline-program: cannot run a case: " + probe.reason());
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> baselineNames() const {
+    std::vector<std::string> names = {options_.program.empty() ? "this program"
+                                                               : options_.program.string()};
+    if (!options_.baseline_plugin.empty()) names.push_back(options_.baseline_plugin.string());
+    return names;
+  }
+
+  void runEntry(PlanEntry& entry, DuelSeries& duels) {
+    const std::unique_ptr<IndexedFrames> recording = openFrames(entry.source, options_);
+    const auto side_of = [&](const Case& test_case, const ExecutorFactory& make_executor) {
+      return DuelSide{caseId(entry.source.reference, test_case), test_case, make_executor};
+    };
+    for (const Case& test_case : entry.cases) {
+      if (!options_.hasBaseline() && &test_case == entry.cases.data()) continue;
+      const DuelSide after = side_of(test_case, make_executor_);
+      for (const std::string& warning : warnings_.warningsFor(test_case)) addNote(warning);
+      const std::optional<Case> baseline =
+          options_.hasBaseline() ? baselineOf(test_case) : entry.cases.front();
+      if (!baseline || !runs(*baseline, make_baseline_executor_, *recording, after.name)) {
+        comparison_.cases.push_back({.id = after.name, .verdict = Verdict::added});
+        continue;
+      }
+      const DuelSide before = side_of(*baseline, make_baseline_executor_);
+      comparison_.cases.push_back(duels.run(before, after, *recording, comparison_.notes));
+    }
+  }
+
+  /// The case in the baseline plug-in; nullopt if that has no such case.
+  std::optional<Case> baselineOf(Case test_case) {
+    if (test_case.algorithm.plugin.empty() || options_.baseline_plugin.empty()) return test_case;
+    try {
+      test_case.algorithm = requireAlgorithm(test_case.algorithm.id, baseline_algorithms_);
+      static_cast<void>(makeInstance(test_case));
+      return test_case;
+    } catch (const InputError& error) {
+      addNote(fmt::format("{}: not in A: {}", caseName(test_case), error.what()));
+      return {};
+    }
+  }
+
+  /// Whether the other program knows the case.
+  bool runs(const Case& baseline, const ExecutorFactory& make_executor, IndexedFrames& recording,
+            const std::string& id) {
+    if (options_.program.empty()) return true;
+    try {
+      CaseRun probe(baseline, {}, make_executor);
+      static_cast<void>(probe.start(recording.scene(), recording.rewind()));
+      return true;
+    } catch (const InputError& error) {
+      addNote(fmt::format("{}: not in A: {}", id, error.what()));
+      return false;
+    }
+  }
+
+  void addNote(const std::string& note) {
+    if (std::ranges::find(comparison_.notes, note) == comparison_.notes.end()) {
+      comparison_.notes.push_back(note);
+    }
+  }
+
+  const Options& options_;
+  Plan plan_;
+  Comparison comparison_;
+  ExecutorFactory make_executor_;
+  ExecutorFactory make_baseline_executor_;
+  std::vector<Algorithm> baseline_algorithms_;  ///< of the other build of the plug-in
+  const Environment environment_ = thisEnvironment();
+  RunWarnings warnings_{environment_};
+};
+
+/// Throws InputError for options that select the cases of a suite.
+void requireNoSelection(const Options& options) {
+  const std::pair<const char*, bool> given[] = {
+      {"--threads", !options.cases.threads.empty()},
+      {"--isa", !options.cases.isas.empty()},
+      {"--filter", !options.filter.empty()},
+      {"--baseline-plugin", !options.baseline_plugin.empty()}};
+  for (const auto& [name, is_given] : given) {
+    if (!is_given) continue;
+    throw InputError(fmt::format(
+        "{}: only with --algorithm; variants are written in full, e.g. kd-mt/avx2/t2", name));
+  }
+}
+
+int run(Options options) {
+  for (const auto& [name, path] : options.outputs) requireOutput(path);
+  const InterruptGuard guard;
+  if (options.isSuite()) {
+    if (options.cases.algorithms.empty() && !options.hasBaseline()) throw InputError(kTooFewSides);
+    options.sources = options.words;
+    return Suite(options).run();
+  }
+  requireNoSelection(options);
+  options.sources = {options.words.front()};
+  options.variants.assign(options.words.begin() + 1, options.words.end());
+  addEnginesOf(options.plugins, options.hosts.hard_limit_seconds);
+  return runVariants(std::move(options));
 }
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  addText(app, "source", "SOURCE", options->sources.emplace_back(),
-          fmt::format("what to run on, one recording: {}", sourceKindsText()))
+  app.add_option(
+         "source", options->words,
+         fmt::format("with --algorithm: what to run on ({}); else one such source and variants "
+                     "to compare on it, written like case names: ID[/ISA][/tTHREADS][/events]"
+                     "[/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; from a plug-in: "
+                     "PLUGIN.so:ID… or NAME:ID…",
+                     sourceKindsText()))
+      ->type_name("SOURCE")
       ->required();
-  app.add_option("variants", options->variants,
-                 "variants to compare, written like case names: ID[/ISA][/tTHREADS]"
-                 "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; from a plug-in: "
-                 "PLUGIN.so:ID… or NAME:ID…")
-      ->type_name("VARIANT")
-      ->required();
+  addVariants(app, options->cases);
+  addFilter(app, options->filter);
   addPath(app, "--baseline-program", "PROGRAM", options->program,
-          "also run every variant with this build of broadmark");
+          "also run every case with this build of broadmark, and compare with it");
+  addPath(app, "--baseline-plugin", "FILE", options->baseline_plugin,
+          "compare the cases of --plugin with those of this build of it");
   addShare(app, "--precision", options->duel.precision, true,
-           "width of the ratios' 95 % intervals at which the duel ends; variants within twice this "
+           "width of the ratios' intervals at which a duel ends; variants within twice this "
            "are the same");
-  addPositive(app, "--max-seconds", "S", options->duel.max_seconds, "stop after this many seconds");
+  addValue(
+      app, "--max-seconds", "S",
+      [=](const std::string& text) {
+        options->max_seconds = parseNumber(text, "--max-seconds", 0, true);
+      },
+      [] {
+        return fmt::format("{}, or {} for each case of a suite", kMaxSeconds, kMaxSecondsOfCase);
+      },
+      "end a duel after this many seconds");
+  addValue(
+      app, "--fail-above", "SHARE",
+      [=](const std::string& text) {
+        options->fail_above = parseShare(text, "--fail-above", true);
+      },
+      [] {
+        return fmt::format("{:.12g}% with a baseline, else none",
+                           100 * ComparisonOptions{}.fail_above);
+      },
+      "a case is a regression if it is slower by more than this share; a duel ends when that is "
+      "certain");
+  app.add_flag("--fail-undecided", options->fail_undecided, "fail if any case is undecided");
   addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
            "checks of the first pass: full: exact pair sets; hash: counts and hashes; off");
   addDevice(app, options->cases.device);
   addAnswer(app, options->cases.answer);
   addSceneOptions(app, options->scene);
-  addPlugins(app, options->plugins, "physics engines");
+  addPlugins(app, options->plugins);
   addParameters(app, options->parameters);
   addReadingOptions(app, options->reading);
   addHosts(app, options->hosts);
-  addPath(app, "--json", "FILE", options->json,
-          "write all times and the verdict as JSON; '-': to standard output, instead of the table");
+  for (const ComparisonWriter& writer : comparisonWriters()) {
+    addOutput(app, writer.name, options->outputs, writer.doc);
+  }
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }
@@ -154,9 +400,9 @@ std::function<int()> add(CLI::App& app) {
 
 Command command() {
   return {.name = "duel",
-          .summary = "Finds the fastest of several variants, run in turns on the same frames.",
+          .summary = "Compares variants, or two builds, in turns on the same frames.",
           .examples = {"duel brownian kd/t2 tide/t2 --objects 8000",
-                       "duel recording.aabbs sap-simd/avx2 sap-simd/sse2 --precision 2%"},
+                       "duel brownian freefall --algorithm kd,tide --with ../before/broadmark"},
           .add = add};
 }
 

@@ -13,6 +13,7 @@
 #include "broadmark/error.h"
 #include "broadmark/harness/runner.h"
 #include "broadmark/names.h"
+#include "support/exit_status.h"
 #include "support/words.h"
 
 namespace broadmark {
@@ -106,6 +107,12 @@ Verdict verdictOn(const Estimate& ratio, const ComparisonOptions& options) {
   return is_tolerated ? verdict : Verdict::regressed;
 }
 
+/// The verdict before times are compared: not_timed if both are ok.
+Verdict verdictOnStatus(Status before, Status after) {
+  if (before != after) return before == Status::ok ? Verdict::regressed : Verdict::other_status;
+  return after == Status::ok ? Verdict::not_timed : Verdict::not_ok;
+}
+
 /// Compares everything except times. `before` has one case or, with several baselines, that case of
 /// each. The verdict is not_timed even if the case was timed.
 CaseComparison compareCase(std::span<const Candidate> before, const Candidate& after,
@@ -118,13 +125,13 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
                           .conditions = differencesOf(before.front(), after),
                           .status_before = a.status,
                           .status_after = b.status,
-                          .reason = b.reason};
+                          .reason = b.reason,
+                          .before = &a,
+                          .after = &b};
   const auto refused = [](const ConditionDifference& difference) { return difference.refused; };
-  if (a.status != b.status) {
-    compared.verdict = a.status == Status::ok ? Verdict::regressed : Verdict::other_status;
-  } else if (b.status != Status::ok) {
-    compared.verdict = Verdict::not_ok;
-  } else if (!options.any_conditions && std::ranges::any_of(compared.conditions, refused)) {
+  compared.verdict = verdictOnStatus(a.status, b.status);
+  if (compared.verdict == Verdict::not_timed && !options.any_conditions &&
+      std::ranges::any_of(compared.conditions, refused)) {
     compared.verdict = Verdict::other_conditions;
   }
   return compared;
@@ -226,6 +233,11 @@ class Matching {
   std::vector<std::size_t> timed_cases_;  ///< index into cases_ of each timed case
 };
 
+/// Whether the answer in B is wrong, or its algorithm failed.
+bool isWrong(const CaseComparison& compared) {
+  return compared.status_after == Status::mismatch || compared.status_after == Status::error;
+}
+
 /// "+5.3 %"
 std::string slowdownText(const Estimate& ratio) {
   return fmt::format("{:+.1f} %", 100 * (ratio.value - 1));
@@ -238,8 +250,7 @@ std::size_t Comparison::count(Verdict verdict) const {
 }
 
 bool Comparison::fails(const CaseComparison& compared) const {
-  return compared.status_after == Status::mismatch || compared.status_after == Status::error ||
-         compared.verdict == Verdict::regressed ||
+  return compared.verdict == Verdict::regressed || isWrong(compared) ||
          (compared.verdict == Verdict::missing && !options.allow_missing) ||
          (compared.verdict == Verdict::undecided && options.fail_undecided);
 }
@@ -250,6 +261,15 @@ bool Comparison::comparable() const {
            compared.verdict != Verdict::other_conditions && compared.verdict != Verdict::missing &&
            compared.verdict != Verdict::added;
   });
+}
+
+int Comparison::exitStatus() const {
+  int status = exit_status::success;
+  for (const CaseComparison& compared : cases) {
+    if (isWrong(compared)) return exit_status::wrong_answer;
+    if (fails(compared)) status = exit_status::regression;
+  }
+  return status;
 }
 
 std::optional<double> Comparison::drift() const {
@@ -264,7 +284,7 @@ std::optional<double> Comparison::drift() const {
 Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
                           const ComparisonOptions& options) {
   if (!options.by.empty()) requireKnown(options.by, after.results);
-  Comparison comparison{.options = options, .cases = {}, .notes = {}};
+  Comparison comparison{.options = options};
   for (const NamedResults& named : before) addNotes(named, comparison.notes);
   addNotes(after, comparison.notes);
   comparison.cases = Matching(before, after, comparison.options).takeCases();
@@ -278,14 +298,40 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
   return comparison;
 }
 
+CaseComparison compareSides(const DuelResult& result, std::size_t before, std::size_t after,
+                            const ComparisonOptions& options) {
+  const DuelResult::Side& a = result.sides[before];
+  const DuelResult::Side& b = result.sides[after];
+  CaseComparison compared{.id = b.name,
+                          .baseline = a.name == b.name ? "" : a.name,
+                          .verdict = verdictOnStatus(a.status, b.status),
+                          .status_before = a.status,
+                          .status_after = b.status,
+                          .reason = b.reason,
+                          .by_duel = true};
+  if (!result.ok() || result.rounds() == 0) return compared;
+  compared.ratio = RunRatio{.before = quantile(a.seconds, 0.5),
+                            .after = quantile(b.seconds, 0.5),
+                            .ratio = result.ratio(after, before),
+                            .drift = std::nullopt};
+  compared.verdict = verdictOn(compared.ratio->ratio, options);
+  return compared;
+}
+
+std::string intervalText(const Interval& interval, int digits) {
+  if (!std::isfinite(interval.high)) return "too few rounds";
+  return fmt::format("{:.{}f}…{:.{}f}", interval.low, digits, interval.high, digits);
+}
+
 std::string verdictText(const CaseComparison& compared) {
-  std::string verdict(kVerdicts.nameOf(compared.verdict));
+  const std::string verdict(kVerdicts.nameOf(compared.verdict));
+  const std::string reason = compared.reason.empty() ? "" : ": " + compared.reason;
   if (compared.status_before != compared.status_after) {
-    return fmt::format("{} -> {} {}", statusName(compared.status_before),
-                       statusName(compared.status_after), verdict);
+    return fmt::format("{} -> {} {}{}", statusName(compared.status_before),
+                       statusName(compared.status_after), verdict, reason);
   }
   if (compared.verdict == Verdict::not_ok) {
-    return fmt::format("{} in both", statusName(compared.status_after));
+    return fmt::format("{} in both{}", statusName(compared.status_after), reason);
   }
   if (compared.verdict == Verdict::faster || compared.verdict == Verdict::slower ||
       (compared.verdict == Verdict::regressed && compared.ratio)) {
@@ -293,6 +339,7 @@ std::string verdictText(const CaseComparison& compared) {
   }
   if (compared.verdict == Verdict::undecided) {
     const auto& [ratio, interval] = compared.ratio->ratio;
+    if (!std::isfinite(interval.high)) return verdict + ": too few rounds";
     return fmt::format("{}: cannot tell within ±{:.0f} %", verdict,
                        100 * (interval.high / ratio - 1));
   }

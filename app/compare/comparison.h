@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "broadmark/analysis/duel.h"
 #include "broadmark/analysis/run_ratio.h"
 #include "broadmark/results/results.h"
 
@@ -29,6 +30,10 @@ struct CaseComparison {
   Status status_after = Status::ok;
   std::string reason = {};             ///< of status_after
   std::optional<RunRatio> ratio = {};  ///< if the case is ok in both
+  bool by_duel = false;                ///< whether the ratio is that of a duel
+  // In the compared results; null in a duel.
+  const CaseResult* before = nullptr;
+  const CaseResult* after = nullptr;
 };
 
 struct ComparisonOptions {
@@ -43,16 +48,19 @@ struct ComparisonOptions {
 };
 
 struct Comparison {
+  std::string command = "compare";  ///< what made it
   ComparisonOptions options;
   /// Cases of B in their order, then those only in A.
-  std::vector<CaseComparison> cases;
-  std::vector<std::string> notes;  ///< on the runs as a whole
+  std::vector<CaseComparison> cases = {};
+  std::vector<std::string> notes = {};  ///< on the runs as a whole
 
   [[nodiscard]] std::size_t count(Verdict verdict) const;
-  /// Whether the case is a failure of B: a wrong answer always is.
+  /// Whether the case is a failure of B: a regression, a wrong answer, a missing case.
   [[nodiscard]] bool fails(const CaseComparison& compared) const;
   /// Whether any case ran on the same recording in both runs.
   [[nodiscard]] bool comparable() const;
+  /// success, wrong_answer, or regression for any other failing case.
+  [[nodiscard]] int exitStatus() const;
   /// Median of RunRatio::drift over the cases.
   [[nodiscard]] std::optional<double> drift() const;
 };
@@ -63,13 +71,20 @@ struct NamedResults {
   Results results;
 };
 
-/// Compares the cases that have the same name and the same hash of the recording; the k-th with the
-/// k-th if there are several. Throws InputError for an `options.by` that no case has.
+/// Compares the cases of results that outlive the comparison, if they have the same name and the
+/// same hash of the recording; the k-th with the k-th if there are several. Throws InputError for
+/// an `options.by` that no case has.
 Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
                           const ComparisonOptions& options);
 
+/// Judges side `after` of a duel, B, against side `before`, A.
+CaseComparison compareSides(const DuelResult&, std::size_t before, std::size_t after,
+                            const ComparisonOptions&);
+
 /// Verdict in words: "ok -> timeout", "1.5 % slower".
 std::string verdictText(const CaseComparison&);
+/// "1.012…1.034", or "too few rounds".
+std::string intervalText(const Interval&, int digits);
 /// "12 cases: 10 same, 1 faster, 1 REGRESSED; drift +1.3 %"
 std::string summaryText(const Comparison&);
 

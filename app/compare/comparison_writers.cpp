@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "broadmark/json_fields.h"
@@ -19,8 +20,15 @@ std::vector<std::string> timeCells(const CaseComparison& compared) {
   if (!compared.ratio) return std::vector<std::string>(4);
   const RunRatio& ratio = *compared.ratio;
   return {durationText(ratio.before), durationText(ratio.after),
-          fmt::format("{:.3f}", ratio.ratio.value),
-          fmt::format("{:.3f}…{:.3f}", ratio.ratio.ci95.low, ratio.ratio.ci95.high)};
+          fmt::format("{:.3f}", ratio.ratio.value), intervalText(ratio.ratio.ci95, 3)};
+}
+
+/// Verdict with the ratio and its interval, for messages without a table.
+std::string messageText(const CaseComparison& compared) {
+  if (!compared.ratio) return verdictText(compared);
+  const auto& [ratio, interval] = compared.ratio->ratio;
+  return fmt::format("{} (ratio {:.3f}, {})", verdictText(compared), ratio,
+                     intervalText(interval, 3));
 }
 
 /// Differences in conditions, without duplicates, each with the number of cases affected.
@@ -64,8 +72,10 @@ Json caseToJson(const Comparison& comparison, const CaseComparison& compared) {
                {"baseline", compared.baseline.empty() ? compared.id : compared.baseline},
                {"verdict", kVerdicts.nameOf(compared.verdict)},
                {"fails", comparison.fails(compared)},
+               {"by_duel", compared.by_duel},
                {"status_before", statusName(compared.status_before)},
                {"status_after", statusName(compared.status_after)},
+               {"reason", compared.reason},
                {"seconds_before", nullptr},
                {"seconds_after", nullptr},
                {"ratio", nullptr},
@@ -76,7 +86,8 @@ Json caseToJson(const Comparison& comparison, const CaseComparison& compared) {
     json["seconds_before"] = ratio->before;
     json["seconds_after"] = ratio->after;
     json["ratio"] = ratio->ratio.value;
-    json["ci95"] = {ratio->ratio.ci95.low, ratio->ratio.ci95.high};
+    const auto [low, high] = ratio->ratio.ci95;
+    if (std::isfinite(high)) json["ci95"] = {low, high};
     if (ratio->drift) json["drift"] = *ratio->drift;
   }
   for (const ConditionDifference& difference : compared.conditions) {
@@ -140,7 +151,7 @@ std::string detailText(const CaseComparison& compared) {
 }
 
 std::string testCase(const Comparison& comparison, const CaseComparison& compared) {
-  const std::string verdict = escapedForXml(detailText(compared));
+  const std::string verdict = escapedForXml(messageText(compared));
   std::string text =
       fmt::format("  <testcase classname=\"broadmark\" name=\"{}\" time=\"{:.9f}\"",
                   escapedForXml(compared.id), compared.ratio ? compared.ratio->after : 0);
@@ -161,8 +172,8 @@ std::string junit(const Comparison& comparison) {
   });
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<testsuite name=\"broadmark compare\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
-      comparison.cases.size(), failures, skipped);
+      "<testsuite name=\"broadmark {}\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
+      comparison.command, comparison.cases.size(), failures, skipped);
   for (const CaseComparison& compared : comparison.cases) text += testCase(comparison, compared);
   return text + fmt::format("  <system-out>{}</system-out>\n</testsuite>\n",
                             escapedForXml(summaryText(comparison)));
@@ -178,10 +189,11 @@ std::string github(const Comparison& comparison) {
   for (const CaseComparison& compared : comparison.cases) {
     const bool fails = comparison.fails(compared);
     if (!fails && compared.verdict != Verdict::undecided) continue;
-    text += fmt::format("::{} title=broadmark compare::{}\n", fails ? "error" : "warning",
-                        escapedForGithub(fmt::format("{}: {}", compared.id, detailText(compared))));
+    text += fmt::format(
+        "::{} title=broadmark {}::{}\n", fails ? "error" : "warning", comparison.command,
+        escapedForGithub(fmt::format("{}: {}", compared.id, messageText(compared))));
   }
-  return text + fmt::format("::notice title=broadmark compare::{}\n",
+  return text + fmt::format("::notice title=broadmark {}::{}\n", comparison.command,
                             escapedForGithub(summaryText(comparison)));
 }
 

@@ -8,6 +8,7 @@
 
 #include "broadmark/analysis/run_ratio.h"
 #include "broadmark/json_fields.h"
+#include "compare/comparison.h"
 #include "support/table.h"
 #include "support/words.h"
 
@@ -78,9 +79,11 @@ std::string failures(const DuelResult& result) {
 
 }  // namespace
 
-std::string intervalText(const Interval& interval, int digits) {
-  if (!std::isfinite(interval.high)) return "too few rounds";
-  return fmt::format("{:.{}f}…{:.{}f}", interval.low, digits, interval.high, digits);
+std::string progressText(const DuelResult& result) {
+  std::string text = counted(result.rounds(), "round");
+  if (result.sides.size() != 2 || result.rounds() == 0) return text;
+  const Estimate ratio = result.ratio(1, 0);
+  return text + fmt::format(", ratio {:.3f} ({})", ratio.value, intervalText(ratio.ci95, 3));
 }
 
 std::string verdictOf(const DuelResult& result) {

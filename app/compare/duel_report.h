@@ -11,8 +11,8 @@ namespace broadmark {
 /// Formats times, ranking, intervals and, for two sides, a histogram of the ratios.
 std::string formatDuel(const DuelResult&, const SceneInfo&);
 
-/// "1.012…1.034", or "too few rounds".
-std::string intervalText(const Interval&, int digits);
+/// "120 rounds, ratio 1.021 (1.012…1.034)"; without a ratio unless there are two sides.
+std::string progressText(const DuelResult&);
 
 /// States the fastest side in one line. The duel must be ok() and have at least one round.
 std::string verdictOf(const DuelResult&);

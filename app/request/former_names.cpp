@@ -22,6 +22,7 @@ constexpr FormerName kFormerNames[] = {
     {"", "--most-seconds", "--max-seconds"},
     {"duel", "--seconds", "--max-seconds"},
     {"duel", "--with", "--baseline-program"},
+    {"compare", "--with", "--baseline-program"},
     {"script", "settled", "idle"},
     {"script", "lane", "algorithm"},
     {"script", "lanes", "algorithms"},
@@ -47,8 +48,10 @@ std::string currentName(std::string_view command, std::string_view name) {
 }  // namespace
 
 std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments) {
-  const std::string command =
-      arguments.empty() || arguments.front() != "duel" ? "" : arguments.front();
+  std::string command;
+  for (const FormerName& entry : kFormerNames) {
+    if (!arguments.empty() && arguments.front() == entry.command) command = entry.command;
+  }
   for (std::string& argument : arguments) {
     if (argument == "--") break;
     const std::size_t end = std::min(argument.find('='), argument.size());

@@ -27,7 +27,7 @@ inline constexpr NameTable kExitStatuses{
     {NamedValue{exit_status::success, "success"},
      {exit_status::wrong_answer, "a wrong answer, or an algorithm that failed"},
      {exit_status::bad_input, "bad usage or bad input"},
-     {exit_status::regression, "a regression (compare)"},
+     {exit_status::regression, "a regression (compare, duel)"},
      {exit_status::timeout, "a case crossed a time limit"},
      {exit_status::interrupted, "interrupted (Ctrl-C)"}}};
 

@@ -49,6 +49,9 @@ class Progress {
     return !InterruptGuard::requested();
   }
 
+  /// Whether it is time to draw again: only then update() shows anything.
+  [[nodiscard]] bool isDue() const;
+
   /// Prints a line on standard output or error without disturbing the progress line.
   void print(std::string_view line) { print(stdout, line); }
   void printError(std::string_view line) { print(stderr, line); }
@@ -56,8 +59,6 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void print(std::FILE* stream, std::string_view line);
-  /// Whether it is time to draw again.
-  [[nodiscard]] bool isDue() const;
   void draw(double seconds_left);
 
   std::string task_;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/helpers.h"
+#include "engine/uneven_machine.h"
 
 namespace broadmark::tests {
 namespace {
@@ -56,7 +57,8 @@ Verdict verdictOn(const CaseResult& before, const CaseResult& after, double fail
                                              {.fail_above = fail_above, .margin = margin});
   EXPECT_EQ(comparison.cases.size(), 1U);
   const CaseComparison& compared = comparison.cases.front();
-  EXPECT_EQ(comparison.fails(compared), compared.verdict == Verdict::regressed);
+  const bool is_wrong = after.status == Status::mismatch || after.status == Status::error;
+  EXPECT_EQ(comparison.fails(compared), compared.verdict == Verdict::regressed || is_wrong);
   return compared.verdict;
 }
 
@@ -93,6 +95,76 @@ TEST(Compare, OneRepetitionEachTellsLittle) {
   EXPECT_EQ(verdictOn(once, once), Verdict::undecided);
   EXPECT_EQ(verdictOn(once, resultOf("a", 1'100'000, 1)), Verdict::undecided);
   EXPECT_EQ(verdictOn(once, resultOf("a", 1'500'000, 1)), Verdict::regressed);
+}
+
+/// Two runs of four cases on a noisy machine, of which the last takes `factor` times as long in B.
+Comparison noisyComparison(unsigned seed, double factor, const ComparisonOptions& options) {
+  const auto run = [&](unsigned run_seed, double last) {
+    UnevenMachine machine(run_seed);
+    std::vector<CaseResult> cases;
+    for (const char* id : {"a", "b", "c", "d"}) cases.push_back(resultOf(id, 0, 0));
+    std::vector<double> noise(cases.size());
+    for (int repetition = 0; repetition < 5; ++repetition) {
+      for (std::size_t i = 0; i < cases.size(); ++i) {
+        auto& frames = cases[i].repetitions.emplace_back().frames;
+        for (int frame = 0; frame < 60; ++frame) {
+          const double seconds = 1e-4 * (i + 1 == cases.size() ? last : 1);
+          frames.emplace_back()[Phase::total] =
+              static_cast<std::int64_t>(machine.time(seconds, noise[i]) * 1e9);
+        }
+      }
+    }
+    return resultsOf(std::move(cases));
+  };
+  const NamedResults before = run(2 * seed, 1);
+  return compareResults({&before, 1}, run(2 * seed + 1, factor), options);
+}
+
+TEST(Compare, ASlowdownFarBeyondTheLimitNeverPasses) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const Comparison slower = noisyComparison(seed, 1.286, {.fail_above = 0.05});
+    EXPECT_EQ(slower.exitStatus(), 3) << seed;
+    EXPECT_EQ(slower.cases.back().verdict, Verdict::regressed) << seed;
+  }
+}
+
+TEST(Compare, TheLimitIsOnTheEstimateIfTheIntervalExcludesOne) {
+  const ComparisonOptions options{.fail_above = 0.05, .margin = 0.02};
+  DuelResult duel;
+  duel.margin = 0.02;
+  const auto verdict = [&](double ratio, double noise) {
+    duel.sides = {{.name = "a"}, {.name = "b"}};
+    for (int round = 0; round < 400; ++round) {
+      const double sign = round * 7919 % 13 < 6 ? -1 : round * 7919 % 13 > 6 ? 1 : 0;
+      duel.sides[0].seconds.push_back(1);
+      duel.sides[1].seconds.push_back(ratio * (1 + sign * noise));
+    }
+    return compareSides(duel, 0, 1, options).verdict;
+  };
+  EXPECT_EQ(verdict(1.286, 0.01), Verdict::regressed);
+  EXPECT_EQ(verdict(1.06, 0.001), Verdict::regressed);
+  EXPECT_EQ(verdict(1.04, 0.001), Verdict::slower);
+  EXPECT_EQ(verdict(1.001, 0.001), Verdict::same);
+  EXPECT_EQ(verdict(0.9, 0.001), Verdict::faster);
+  EXPECT_EQ(verdict(1.06, 0.5), Verdict::undecided);
+}
+
+TEST(Compare, SidesOfADuelKeepTheirStatus) {
+  DuelResult duel;
+  duel.sides = {{.name = "a"}, {.name = "b", .status = Status::mismatch, .reason = "1 missed"}};
+  Comparison comparison{.command = "duel"};
+  comparison.cases = {compareSides(duel, 0, 1, {})};
+  EXPECT_EQ(comparison.cases[0].verdict, Verdict::regressed);
+  EXPECT_EQ(comparison.exitStatus(), 1);
+  for (const ComparisonWriter& writer : comparisonWriters()) {
+    EXPECT_THAT(writer.format(comparison), HasSubstr("mismatch")) << writer.name;
+  }
+  std::swap(duel.sides[0].status, duel.sides[1].status);
+  comparison.cases = {compareSides(duel, 0, 1, {})};
+  EXPECT_EQ(comparison.exitStatus(), 0) << "it is right now";
+  duel.sides[1].status = Status::mismatch;
+  comparison.cases = {compareSides(duel, 0, 1, {})};
+  EXPECT_EQ(comparison.exitStatus(), 1) << "as wrong as before";
 }
 
 TEST(Compare, FailAboveIsWhatIsTolerated) {

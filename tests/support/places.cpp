@@ -11,6 +11,8 @@ std::string unrulyPlugin() { return UNRULY_PLUGIN; }
 std::string unrulyEngine() { return UNRULY_ENGINE; }
 std::string invalidPlugin() { return INVALID_PLUGIN; }
 std::string enginePlugin() { return ENGINE_PLUGIN; }
+std::string quickPlugin() { return QUICK_PLUGIN; }
+std::string slowPlugin() { return SLOW_PLUGIN; }
 std::string foreignPlugin() { return FOREIGN_PLUGIN; }
 std::string faultInjection() { return FAULT_INJECTION; }
 

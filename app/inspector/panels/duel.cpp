@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadmark/statistics/statistics.h"
+#include "compare/comparison.h"
 #include "compare/duel_report.h"
 #include "inspector/panels/panel.h"
 #include "support/words.h"
