@@ -88,7 +88,7 @@ class Dbvt final : public BulletBroadPhase {
     if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);
     proxies_.resize(boxes().size(), nullptr);
     const std::vector<std::uint32_t> bodies = first.presentBodies();
-    putToRest(NonCollidingLayers(scene.filter, bodies), bodies);
+    putToRest(scene.filter, bodies);
     for (const std::uint32_t body : bodies) {
       if (proxies_[body] == nullptr) create(body);
     }
@@ -173,12 +173,13 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   /// Inserts bodies that never collide into the tree at rest, before all others.
-  void putToRest(const NonCollidingLayers& layers, std::span<const std::uint32_t> bodies) {
+  void putToRest(const CollisionFilter& filter, std::span<const std::uint32_t> bodies) {
+    const NonCollidingLayers layers(filter, bodies);
     if (layers.bodyCount() == 0) return;
     const bool deferred = tree_.m_deferedcollide;
     tree_.m_deferedcollide = true;  // no pair search on creation,
     for (const std::uint32_t body : bodies) {
-      if (layers.contains(body)) create(body);
+      if (layers.contains(filter.layerOf(body))) create(body);
     }
     tree_.m_deferedcollide = false;  // nor here, where all become at rest
     for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);

@@ -60,7 +60,7 @@ void StaticBvh::build(std::span<const Aabb> boxes, std::span<const std::uint32_t
   filter_ = filter;
   layers_ = layers;
   std::ranges::copy_if(bodies, std::back_inserter(bodies_),
-                       [&](std::uint32_t body) { return layers.contains(body); });
+                       [&](std::uint32_t body) { return layers.contains(filter.layerOf(body)); });
   sortIntoNodes(bodies_, boxes, kNodeWidth);
   index_of_.assign(boxes.size(), kInvalidIndex);
   std::vector<Aabb> level;

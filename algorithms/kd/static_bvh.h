@@ -36,7 +36,9 @@ class StaticBvh {
   [[nodiscard]] bool contains(std::uint32_t body) const {
     return !index_of_.empty() && index_of_[body] != kInvalidIndex;
   }
-  [[nodiscard]] bool collidesWith(std::uint32_t body) const { return layers_.collideWith(body); }
+  [[nodiscard]] bool collidesWith(std::uint32_t body) const {
+    return layers_.collideWith(filter_.layerOf(body));
+  }
   /// Thread-safe. The caller then passes the number of removed bodies to countRemoved().
   void remove(std::uint32_t body);
   void countRemoved(std::size_t bodies) { removed_ += bodies; }

@@ -25,8 +25,10 @@ LayerMatrix& LayerMatrix::set(std::size_t a, std::size_t b, bool collide) {
   return *this;
 }
 
-CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix) {
+CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix,
+                                 bool changes) {
   const auto data = std::make_shared<Data>();
+  data->changes = changes;
   data->matrix = matrix;
   const auto store = [&](auto BodyGroups::*member, auto default_value, auto& all) {
     const bool any = std::ranges::any_of(
@@ -43,7 +45,9 @@ CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const Layer
           fmt::format("layer {}: there are layers 0 to {}", layer, LayerMatrix::kLayers - 1));
     }
   }
-  if (data->layers.empty() && data->worlds.empty() && data->tags.empty() && matrix.collide(0, 0)) {
+  const bool has_groups = !data->layers.empty() || !data->worlds.empty() || !data->tags.empty();
+  const bool is_plain = matrix.collide(0, 0) && (!changes || matrix == LayerMatrix().set(0, 0));
+  if (!has_groups && is_plain) {
     return;
   }
   data_ = data;
@@ -80,7 +84,27 @@ CollisionFilter CollisionFilter::of(std::span<const std::uint32_t> bodies) const
   if (data_ == nullptr) return {};
   std::vector<BodyGroups> groups;
   for (const std::uint32_t body : bodies) groups.push_back(groupsOf(body));
-  return {groups, data_->matrix};
+  return {groups, data_->matrix, data_->changes};
+}
+
+CollisionFilter CollisionFilter::with(std::span<const std::uint32_t> changed,
+                                      std::span<const BodyGroups> groups, std::size_t count) const {
+  std::vector<BodyGroups> all;
+  all.reserve(count);
+  for (std::uint32_t body = 0; body < count; ++body) all.push_back(groupsOf(body));
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    all[changed[i]].layer = groups[i].layer;
+    all[changed[i]].tags = groups[i].tags;
+  }
+  return {all, matrix(), true};
+}
+
+CollisionFilter CollisionFilter::with(std::span<const std::uint32_t> changed,
+                                      const CollisionFilter& source, std::size_t count) const {
+  std::vector<BodyGroups> groups;
+  groups.reserve(changed.size());
+  for (const std::uint32_t body : changed) groups.push_back(source.groupsOf(body));
+  return with(changed, groups, count);
 }
 
 bool CollisionFilter::Data::shareTag(const BodyGroups::Tags& a, const BodyGroups::Tags& b) {
@@ -91,7 +115,30 @@ bool CollisionFilter::Data::shareTag(const BodyGroups::Tags& a, const BodyGroups
 
 bool operator==(const CollisionFilter& a, const CollisionFilter& b) {
   if (a.data_ == nullptr || b.data_ == nullptr) return a.data_ == b.data_;
-  return a.data_ == b.data_ || *a.data_ == *b.data_;
+  if (a.data_ == b.data_) return true;
+  return a.data_->matrix == b.data_->matrix && a.data_->layers == b.data_->layers &&
+         a.data_->worlds == b.data_->worlds && a.data_->tags == b.data_->tags;
+}
+
+LiveFilter::LiveFilter(const CollisionFilter& first, std::size_t bodies)
+    : data_(std::make_shared<CollisionFilter::Data>()) {
+  data_->matrix = first.matrix();
+  data_->worlds.assign(first.worlds().begin(), first.worlds().end());
+  data_->layers.resize(bodies);
+  data_->tags.resize(bodies, BodyGroups::kNoTags);
+  for (std::uint32_t body = 0; body < bodies; ++body) update(body, first);
+}
+
+CollisionFilter LiveFilter::filter() const {
+  CollisionFilter filter;
+  filter.data_ = data_;
+  return filter;
+}
+
+void LiveFilter::update(std::uint32_t body, const CollisionFilter& source) {
+  const BodyGroups groups = source.groupsOf(body);
+  data_->layers[body] = groups.layer;
+  data_->tags[body] = groups.tags;
 }
 
 }  // namespace broadmark

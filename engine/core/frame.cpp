@@ -23,7 +23,7 @@ Frame IndexedFrames::at(std::uint32_t index) {
   }
   const std::span<const Aabb> boxes = readBoxes(index);
   position_ = index;
-  return {index, boxes, changed()};
+  return {index, boxes, changed(), filter(), filterChanged()};
 }
 
 std::optional<Frame> IndexedFrames::next() {
@@ -35,10 +35,12 @@ FrameList::FrameList(FrameSource& source) : scene_(source.scene()) {
   boxes_.reserve(std::size_t{scene_.objects} * (std::size_t{scene_.frames} + 1));
   for (std::optional<Frame> frame = source.rewind(); frame; frame = source.next()) {
     boxes_.insert(boxes_.end(), frame->boxes.begin(), frame->boxes.end());
+    if (scene_.filter_changes) filters_.push_back(frame->filterIn(scene_));
   }
 }
 
 std::span<const Aabb> FrameList::readBoxes(std::uint32_t index) {
+  last_ = index;
   return std::span(boxes_).subspan(std::size_t{index} * scene_.objects, scene_.objects);
 }
 

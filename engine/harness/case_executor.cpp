@@ -76,8 +76,9 @@ bool hasInstancePerWorld(const Case& test_case, const SceneInfo& scene) {
 
 std::unique_ptr<BroadPhase> makeWorldInstance(const Case& test_case, const SceneInfo& scene) {
   std::unique_ptr<BroadPhase> instance = makeInstance(test_case);
-  if (!isCompacted(test_case, scene)) return instance;
-  return compacted(std::move(instance));
+  if (isCompacted(test_case, scene)) return compacted(std::move(instance));
+  if (scene.filter_changes) return withFilterChanges(std::move(instance));
+  return instance;
 }
 
 CounterVisitor recorderOf(Counts& counts) {

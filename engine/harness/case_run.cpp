@@ -107,19 +107,20 @@ void CaseRun::accumulateEvents(const Frame& frame) {
 
 std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle) {
   if (!checks()) return std::nullopt;
+  const CollisionFilter& filter = frame.filter == nullptr ? filter_ : *frame.filter;
   if (policy_.check == CheckMode::hash && margin_ == 0 && accumulated_.impossible().empty()) {
     PairDigest found;
     if (!attempt(
             [&] { found = answersEvents() ? digest(accumulated_.pairs()) : executor_->digest(); }))
       return std::nullopt;
-    if (found == oracle.pairDigest(frame.boxes, filter_))
+    if (found == oracle.pairDigest(frame.boxes, filter))
       return FrameDifference{.frame = frame.index};
   }
   PairRuns answer;
   if (!attempt([&] { answer = answersEvents() ? accumulated_.pairs() : executor_->answer(); }))
     return std::nullopt;
   FrameDifference difference =
-      findDifference(answer, oracle.pairs(frame.boxes, filter_), frame, margin_, filter_);
+      findDifference(answer, oracle.pairs(frame.boxes, filter), frame, margin_, filter);
   difference.addInvalid(accumulated_.impossible());
   if (difference.isMismatch()) {
     fail(Status::mismatch, atFrame(mismatchText(difference)));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "broadmark/error.h"
@@ -20,17 +21,32 @@ void recordPair(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
   if (listed.size() < FrameDifference::kMaxListed) listed.push_back(pair);
 }
 
+/// The hash of everything that decides which pairs are correct.
+HashValue keyOf(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+  Hasher hasher;
+  hasher.add(std::as_bytes(boxes));
+  if (filter.wantsAll()) return hasher.value();
+  const LayerMatrix matrix = filter.matrix();
+  const std::array<std::size_t, 3> sizes = {filter.layers().size(), filter.worlds().size(),
+                                            filter.tags().size()};
+  hasher.add(std::as_bytes(std::span(matrix.rows())));
+  hasher.add(std::as_bytes(std::span(sizes)));
+  hasher.add(std::as_bytes(filter.layers()));
+  hasher.add(std::as_bytes(filter.worlds()));
+  hasher.add(std::as_bytes(filter.tags()));
+  return hasher.value();
+}
+
 }  // namespace
 
 Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
                              bool with_pairs) {
-  // Each answer holds its filter, so no other filter can get the same address.
-  const std::pair key(hashOf(std::as_bytes(boxes)), filter.address());
+  const HashValue key = keyOf(boxes, filter);
   const auto cached = answers_.find(key);
   if (cached != answers_.end() && (cached->second.pairs || !with_pairs)) return cached->second;
   scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter)
                                               : sweptPairs(boxes, filter, max_pairs_);
-  Answer& answer = answers_.try_emplace(key, Answer{.filter = filter}).first->second;
+  Answer& answer = answers_[key];
   const PairRun pairs = scratch_;
   answer.digest = digest({&pairs, 1});
   const std::size_t bytes = scratch_.size() * sizeof(Pair);

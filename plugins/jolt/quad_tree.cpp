@@ -104,8 +104,9 @@ class Layers final : public JPH::BroadPhaseLayerInterface,
                      public JPH::ObjectVsBroadPhaseLayerFilter,
                      public JPH::ObjectLayerPairFilter {
  public:
-  explicit Layers(const CollisionFilter& filter) : matrix_(filter.matrix()) {
-    for (const std::uint8_t layer : filter.layers()) count_ = std::max(count_, layer + 1U);
+  explicit Layers(const SceneInfo& scene) : matrix_(scene.filter.matrix()) {
+    if (scene.filter_changes) count_ = LayerMatrix::kLayers;
+    for (const std::uint8_t layer : scene.filter.layers()) count_ = std::max(count_, layer + 1U);
   }
 
   JPH::uint GetNumBroadPhaseLayers() const override { return count_; }
@@ -165,7 +166,7 @@ class QuadTree final : public BoxBroadPhase {
                   ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     filter_ = scene.filter;
-    layers_ = std::make_unique<Layers>(filter_);
+    layers_ = std::make_unique<Layers>(scene);
     manager_.Init(static_cast<JPH::uint>(std::max<std::size_t>(boxes().size(), 1)), 0, *layers_);
     trees_.Init(&manager_, *layers_);
     for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
@@ -187,6 +188,10 @@ class QuadTree final : public BoxBroadPhase {
       const bool is_present = !isEmpty(boxes()[body]);
       if (!is_present && !isInTree(body)) continue;
       const JPH::BodyID id = bodies_[body]->GetID();
+      if (!isInTree(body)) {  // its layer may have changed
+        manager_.SetBodyObjectLayerInternal(*bodies_[body],
+                                            static_cast<JPH::ObjectLayer>(filter_.layerOf(body)));
+      }
       (!is_present ? removed_ : !isInTree(body) ? added_ : moved_).push_back(id);
     }
   }

@@ -102,13 +102,12 @@ class PhysX final : public BroadPhase {
     team_ = &execution.team();
     if (execution.threads() > 1) threads_.emplace(execution.threads());
     const std::vector<std::uint32_t> bodies = first.presentBodies();
-    const NonCollidingLayers layers(filter_, bodies);
+    static_layers_ = NonCollidingLayers(filter_, bodies);
     const std::size_t count = first.boxes.size() + 1;  // PhysX reads past the last body
     bounds_.assign(count, physx::PxBounds3(physx::PxVec3(0), physx::PxVec3(0)));
     distances_.assign(count, 0);
     for (std::uint32_t body = 0; body < first.boxes.size(); ++body) {
-      groups_.push_back(layers.contains(body) ? physx::PxGetBroadPhaseStaticFilterGroup()
-                                              : physx::PxGetBroadPhaseDynamicFilterGroup(body));
+      groups_.push_back(groupOf(body));
     }
     groups_.push_back(0);
     is_present_.assign(count, 0);
@@ -202,6 +201,11 @@ class PhysX final : public BroadPhase {
     return (is_present_[pair.a] & is_present_[pair.b]) != 0;
   }
 
+  [[nodiscard]] physx::PxBpFilterGroup groupOf(std::uint32_t body) const {
+    return static_layers_.contains(filter_.layerOf(body))
+               ? physx::PxGetBroadPhaseStaticFilterGroup()
+               : physx::PxGetBroadPhaseDynamicFilterGroup(body);
+  }
   [[nodiscard]] bool isWanted(Pair pair) const { return filter_.wanted(pair.a, pair.b); }
   [[nodiscard]] bool hasMoved(Pair pair) const {
     return (has_moved_[pair.a] | has_moved_[pair.b]) != 0;
@@ -215,6 +219,7 @@ class PhysX final : public BroadPhase {
     const bool was_present = is_present_[body] != 0;
     is_present_[body] = has_moved_[body] = is_present ? 1 : 0;
     if (is_present) bounds_[body] = boundsOf(box);
+    if (is_present && !was_present) groups_[body] = groupOf(body);  // a LiveFilter may have changed
     if (is_present) (was_present ? updated_ : created_).push_back(body);
     if (!is_present && was_present) removed_.push_back(body);
     if (!loads_) return;
@@ -290,6 +295,7 @@ class PhysX final : public BroadPhase {
   }
 
   CollisionFilter filter_;
+  NonCollidingLayers static_layers_;
   ThreadTeam* team_ = nullptr;
   std::unique_ptr<physx::PxBroadPhase, ReleasePhysX> broad_phase_;
   std::optional<PhysXThreads> threads_;

@@ -37,6 +37,9 @@ class CompactingAdapter final : public BroadPhase {
     margin_ = algorithm_->margin();
     filter_ = scene.filter;
     matrix_ = filter_.matrix();
+    for (std::uint32_t body = 0; body < scene.objects; ++body) {
+      layers_.push_back(static_cast<std::uint8_t>(filter_.layerOf(body)));
+    }
     std::vector<std::uint32_t> all(scene.objects);
     std::iota(all.begin(), all.end(), 0U);
     findNonColliding(scene, all);
@@ -53,11 +56,13 @@ class CompactingAdapter final : public BroadPhase {
     SceneInfo compacted = scene;
     compacted.all_present = true;
     compacted.filter = {};
+    compacted.filter_changes = false;
     compacted.world = worlds_->world();
     algorithm_->initialize(compacted, {first.index, boxes_, changed_}, execution);
   }
 
   void updateObjects(const Frame& frame) override {
+    if (!frame.filter_changed.empty()) filter_ = *frame.filter;
     applyChanges(frame);
     algorithm_->updateObjects({frame.index, boxes_, changed_});
   }
@@ -103,20 +108,28 @@ class CompactingAdapter final : public BroadPhase {
   void findNonColliding(const SceneInfo& scene, std::span<const std::uint32_t> bodies) {
     const NonCollidingLayers layers(filter_, bodies);
     const auto colliding = static_cast<std::size_t>(std::ranges::count_if(
-        bodies, [&](std::uint32_t body) { return layers.collideWith(body); }));
+        bodies, [&](std::uint32_t body) { return layers.collideWith(layers_[body]); }));
     if (layers.bodyCount() < colliding) return;  // a proximity test would cost more than it saves
     non_colliding_ = layers;
-    for (const std::uint32_t body : bodies) {
-      if (non_colliding_.contains(body)) non_colliding_bodies_.push_back(body);
-      if (non_colliding_.collideWith(body)) colliding_bodies_.push_back(body);
-    }
+    non_colliding_bodies_.reserve(bodies.size());
+    colliding_bodies_.reserve(bodies.size());
+    listBodies();
     occupancy_.emplace(scene.world);
+  }
+
+  void listBodies() {
+    non_colliding_bodies_.clear();
+    colliding_bodies_.clear();
+    for (std::uint32_t body = 0; body < layers_.size(); ++body) {
+      if (non_colliding_.contains(layers_[body])) non_colliding_bodies_.push_back(body);
+      if (non_colliding_.collideWith(layers_[body])) colliding_bodies_.push_back(body);
+    }
   }
 
   void applyChanges(const Frame& frame) {
     changed_.clear();
     activated_.clear();
-    if (frame.changed->empty()) return;
+    if (frame.changed->empty() && frame.filter_changed.empty()) return;
     const bool layers_changed = updatePopulation(frame);
     markColliding(frame);
     // Removals first: later insertions then neither leave gaps nor reuse an index.
@@ -135,13 +148,20 @@ class CompactingAdapter final : public BroadPhase {
     std::erase_if(changed_, [this](std::uint32_t index) { return index >= boxes_.size(); });
   }
 
-  /// Returns whether a layer gained its first possible partner, or lost its last one.
+  /// Returns whether a layer gained its first possible partner, or lost its last one, or a body has
+  /// another layer: in a LiveFilter, at the latest when its box changes.
   bool updatePopulation(const Frame& frame) {
-    for (const std::uint32_t body : *frame.changed) {
-      const std::uint8_t present = isEmpty(frame.boxes[body]) ? 0 : 1;
-      population_[filter_.layerOf(body)] += present;
-      population_[filter_.layerOf(body)] -= std::exchange(present_[body], present);
+    bool layers_changed = false;
+    for (const std::span<const std::uint32_t> bodies : {*frame.changed, frame.filter_changed}) {
+      for (const std::uint32_t body : bodies) {
+        const auto layer = static_cast<std::uint8_t>(filter_.layerOf(body));
+        const std::uint8_t present = isEmpty(frame.boxes[body]) ? 0 : 1;
+        layers_changed |= layer != layers_[body];
+        population_[layer] += present;
+        population_[std::exchange(layers_[body], layer)] -= std::exchange(present_[body], present);
+      }
     }
+    if (layers_changed && occupancy_) listBodies();
     const std::uint32_t before = std::exchange(active_layers_, 0);
     for (std::size_t layer = 0; layer < LayerMatrix::kLayers; ++layer) {
       for (std::size_t other = 0; other < LayerMatrix::kLayers; ++other) {
@@ -149,7 +169,7 @@ class CompactingAdapter final : public BroadPhase {
         active_layers_ |= std::uint32_t{has_partner} << layer;
       }
     }
-    return active_layers_ != before;
+    return layers_changed || active_layers_ != before;
   }
 
   void markColliding(const Frame& frame) {
@@ -161,8 +181,8 @@ class CompactingAdapter final : public BroadPhase {
   }
 
   [[nodiscard]] bool isActive(std::uint32_t body, const Aabb& box) {
-    if (present_[body] == 0 || (active_layers_ >> filter_.layerOf(body) & 1) == 0) return false;
-    return !non_colliding_.contains(body) || occupancy_->isNear(box);
+    if (present_[body] == 0 || (active_layers_ >> layers_[body] & 1) == 0) return false;
+    return !non_colliding_.contains(layers_[body]) || occupancy_->isNear(box);
   }
 
   void updateActivity(std::uint32_t body, const Aabb& box) {
@@ -234,6 +254,7 @@ class CompactingAdapter final : public BroadPhase {
 
   // The criteria for active bodies.
   LayerMatrix matrix_;
+  std::vector<std::uint8_t> layers_;                            ///< by body
   std::vector<std::uint8_t> present_;                           ///< by body: 1 if present
   std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present bodies, by layer
   std::uint32_t active_layers_ = 0;   ///< bit per layer: a possible partner is present
@@ -256,7 +277,7 @@ class CompactingAdapter final : public BroadPhase {
 }  // namespace
 
 bool isChangingWorld(const SceneInfo& scene) {
-  return !scene.all_present || !scene.filter.wantsAll();
+  return !scene.all_present || !scene.filter.wantsAll() || scene.filter_changes;
 }
 
 std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm) {

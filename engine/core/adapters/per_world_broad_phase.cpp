@@ -37,7 +37,7 @@ SceneInfo sceneOf(const SceneInfo& all, std::span<const std::uint32_t> bodies) {
 
   SceneInfo world = all;
   world.objects = static_cast<std::uint32_t>(bodies.size());
-  world.filter = {groups, all.filter.matrix()};
+  world.filter = {groups, all.filter.matrix(), all.filter_changes};
   return world;
 }
 
@@ -123,6 +123,16 @@ class PerWorldBroadPhase final : public BroadPhase {
       world.changed.push_back(location.body);
       world.boxes[location.body] = frame.boxes[body];
     }
+    for (const std::uint32_t body : frame.filter_changed) {
+      const BodyLocation location = locations_[body];
+      if (location.world == kNoBody) continue;
+      World& world = worlds_[location.world];
+      if (world.changed.empty() && world.filter_changed.empty() && !is_first) {
+        active_.push_back(location.world);
+      }
+      if (world.filter_changed.empty()) world.scene.filter = frame.filter->of(world.bodies);
+      world.filter_changed.push_back(location.body);
+    }
   }
 
   void searchOverlaps() override {
@@ -130,6 +140,7 @@ class PerWorldBroadPhase final : public BroadPhase {
       ++world.index;
       world.instance->updateObjects(world.frame());
       world.changed.clear();
+      world.filter_changed.clear();
       world.instance->cleanCache();
       world.instance->updateStructures();
       world.instance->searchOverlaps();
@@ -203,12 +214,16 @@ class PerWorldBroadPhase final : public BroadPhase {
     ExecutionContext* execution = nullptr;
     std::uint32_t index = 0;  ///< the instance's last frame; frames without changes do not count
     std::vector<Aabb> boxes;
-    std::vector<std::uint32_t> changed;  ///< indices into `bodies`, ascending
-    std::vector<Pair> pairs;             ///< by body id
+    std::vector<std::uint32_t> changed;         ///< indices into `bodies`, ascending
+    std::vector<std::uint32_t> filter_changed;  ///< likewise
+    std::vector<Pair> pairs;                    ///< by body id
     std::vector<Pair> began;
     std::vector<Pair> ended;
 
-    [[nodiscard]] Frame frame() const { return {index, boxes, changed}; }
+    [[nodiscard]] Frame frame() const {
+      return {index, boxes, changed, scene.filter_changes ? &scene.filter : nullptr,
+              filter_changed};
+    }
     void mapToBodies(PairRuns found, std::vector<Pair>& into) const {
       into.resize(pairCount(found));
       auto next = into.begin();

@@ -18,7 +18,8 @@ namespace {
 // Types copied to shared memory as they are.
 static_assert(sizeof(Aabb) == 32 && sizeof(Pair) == 8 && sizeof(RecordedDrawing::Box) == 48 &&
               sizeof(RecordedDrawing::Segment) == 28);
-static_assert(std::is_trivially_copyable_v<Aabb> && std::is_trivially_copyable_v<Pair> &&
+static_assert(std::is_trivially_copyable_v<BodyGroups> && std::is_trivially_copyable_v<Aabb> &&
+              std::is_trivially_copyable_v<Pair> &&
               std::is_trivially_copyable_v<RecordedDrawing::Box> &&
               std::is_trivially_copyable_v<RecordedDrawing::Segment>);
 
@@ -142,7 +143,8 @@ Json toJson(const SceneInfo& scene) {
           {"objects", scene.objects},
           {"frames", scene.frames},
           {"world", {scene.world.min, scene.world.max}},
-          {"all_present", scene.all_present}};
+          {"all_present", scene.all_present},
+          {"filter_changes", scene.filter_changes}};
 }
 
 SceneInfo sceneFrom(const Json& json) {
@@ -150,7 +152,8 @@ SceneInfo sceneFrom(const Json& json) {
                   .object_type = json.at("object_type").get<std::string>(),
                   .objects = json.at("objects").get<std::uint32_t>(),
                   .frames = json.at("frames").get<std::uint32_t>(),
-                  .all_present = json.at("all_present").get<bool>()};
+                  .all_present = json.at("all_present").get<bool>(),
+                  .filter_changes = json.at("filter_changes").get<bool>()};
   json.at("world").at(0).get_to(scene.world.min);
   json.at("world").at(1).get_to(scene.world.max);
   return scene;
@@ -169,8 +172,9 @@ Json writeFilter(const CollisionFilter& filter, const SharedMemory& memory, std:
 }
 
 CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::uint64_t offset,
-                           std::size_t bodies) {
+                           const SceneInfo& scene) {
   if (json.is_null()) return {};
+  const std::size_t bodies = scene.objects;
   std::vector<BodyGroups> groups(bodies);
   const auto read = [&]<class Item>(const char* name, Item BodyGroups::*member) {
     if (!json.at(name).get<bool>()) return;
@@ -189,7 +193,7 @@ CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::ui
       if ((rows[a] >> b & 1) != 0) matrix.set(a, b);
     }
   }
-  return {groups, matrix};
+  return {groups, matrix, scene.filter_changes};
 }
 
 }  // namespace broadmark::worker

@@ -1,7 +1,7 @@
 // The protocol between a process and its worker process.
 //
 // A message is one JSON object in one packet. First the worker sends its version:
-//   {"protocol": 4, "program": "0.1.0"}
+//   {"protocol": 5, "program": "0.1.0"}
 // Then it answers each call, with the last column or with
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
@@ -11,12 +11,14 @@
 //               answer ("pairs" | "events"),
 //               memory_limit_bytes (0: none), pin                 {}
 //   start       scene {name, object_type, objects, frames,        initialize_ns, pinned
-//               world, all_present},
+//               world, all_present, filter_changes},
 //               filter (null: all pairs are wanted)
 //               shared: the boxes of frame 0, then the filter's
 //               tags, worlds, layers, if any
-//   step        frame, changed: the number of changed bodies      times_ns {}, pairs
-//               shared: their ids, then their boxes
+//   step        frame; changed, filter_changed: the numbers of    times_ns {}, pairs
+//               bodies with another box, or another filter
+//               shared: the ids and boxes of the former, then
+//               ids, layers and tags of the latter
 //   digest                                                        count, hash
 //   answer                                                        pairs: their number
 //                                                                 shared: the pairs
@@ -45,7 +47,7 @@
 
 namespace broadmark::worker {
 
-inline constexpr int kProtocolVersion = 4;
+inline constexpr int kProtocolVersion = 5;
 
 // The worker's descriptors.
 inline constexpr int kChannelDescriptor = 3;
@@ -128,8 +130,9 @@ Json toJson(const SceneInfo&);
 SceneInfo sceneFrom(const Json&);
 /// Writes the filter's arrays, if any, from `offset` on.
 Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offset);
+/// As an argument of the call `start`, for its scene.
 CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
-                           std::size_t bodies);
+                           const SceneInfo& scene);
 
 /// The known values of a table's names.
 template <class Table, class Values>

@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -115,12 +117,15 @@ class Server {
   Json start(const Json& message) {
     SceneInfo scene = worker::sceneFrom(message.at("scene"));
     frames_.read(boxes_, scene.objects);
-    scene.filter = worker::readFilter(message.at("filter"), frames_, boxes_.size() * sizeof(Aabb),
-                                      scene.objects);
+    scene.filter =
+        worker::readFilter(message.at("filter"), frames_, boxes_.size() * sizeof(Aabb), scene);
     changed_.resize(boxes_.size());  // outside the pass: not the algorithm's memory
     changed_boxes_.resize(boxes_.size());
     if (!measured_) peak_before_ = peakBytes();
-    const Frame first{0, boxes_, std::span<const std::uint32_t>()};
+    filter_ = scene.filter;
+    filter_changes_ = scene.filter_changes;
+    Frame first{0, boxes_, std::span<const std::uint32_t>()};
+    if (filter_changes_) first.filter = &filter_;
     started_ = false;
     const std::int64_t initialize_ns = executor().start(scene, first);
     started_ = true;
@@ -134,7 +139,23 @@ class Server {
     for (std::size_t i = 0; i < changed_.size(); ++i) {
       boxes_.at(changed_[i]) = changed_boxes_[i];
     }
-    return {message.at("frame").get<std::uint32_t>(), boxes_, changed_};
+    Frame frame{message.at("frame").get<std::uint32_t>(), boxes_, changed_};
+    if (filter_changes_) readFilterChanges(message, frame);
+    return frame;
+  }
+
+  void readFilterChanges(const Json& message, Frame& frame) {
+    const std::uint64_t ids_offset = changed_.size() * (sizeof(std::uint32_t) + sizeof(Aabb));
+    frames_.read(filter_changed_, message.at("filter_changed").get<std::size_t>(), ids_offset);
+    frames_.read(groups_, filter_changed_.size(),
+                 ids_offset + filter_changed_.size() * sizeof(std::uint32_t));
+    if (std::ranges::any_of(filter_changed_,
+                            [this](std::uint32_t body) { return body >= boxes_.size(); })) {
+      throw std::out_of_range("filter_changed");
+    }
+    if (!filter_changed_.empty()) filter_ = filter_.with(filter_changed_, groups_, boxes_.size());
+    frame.filter = &filter_;
+    frame.filter_changed = filter_changed_;
   }
 
   Json step(const Json& message) {
@@ -189,6 +210,7 @@ class Server {
     LargeVector<Aabb>().swap(boxes_);
     std::vector<Aabb>().swap(changed_boxes_);
     std::vector<std::uint32_t>().swap(changed_);
+    filter_ = {};
     return {{"peak_bytes", peak_growth_ ? Json(*peak_growth_) : Json(nullptr)},
             {"heap_bytes", heapBytes()},
             {"processor", worker::namedToJson(kProcessorCounters, executor().report().processor)}};
@@ -207,6 +229,10 @@ class Server {
   LargeVector<Aabb> boxes_;  ///< of the last frame
   std::vector<std::uint32_t> changed_;
   std::vector<Aabb> changed_boxes_;
+  CollisionFilter filter_;  ///< of the last frame, if filters change
+  bool filter_changes_ = false;
+  std::vector<std::uint32_t> filter_changed_;
+  std::vector<BodyGroups> groups_;  ///< of the bodies in filter_changed_
   std::optional<InProcessExecutor> executor_;
   bool started_ = false;
   bool measured_ = false;

@@ -198,10 +198,13 @@ class WorkerProcess final : public CaseExecutor {
   StepResult step(const Frame& frame) override {
     changed_boxes_.clear();
     for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
-    connection_->frames.write(std::span<const Aabb>(changed_boxes_),
-                              connection_->frames.write(*frame.changed));
-    const Json answer = connection_->call(
-        {{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
+    std::uint64_t end = connection_->frames.write(*frame.changed);
+    end = connection_->frames.write(std::span<const Aabb>(changed_boxes_), end);
+    if (!frame.filter_changed.empty()) writeFilterChanges(frame, end);
+    const Json answer = connection_->call({{"call", "step"},
+                                           {"frame", frame.index},
+                                           {"changed", frame.changed->size()},
+                                           {"filter_changed", frame.filter_changed.size()}});
     StepResult result{.pairs = answer.at("pairs").get<std::uint64_t>()};
     worker::readNamed(answer.at("times_ns"), kPhases, result.times);
     return result;
@@ -268,6 +271,15 @@ class WorkerProcess final : public CaseExecutor {
   }
 
  private:
+  void writeFilterChanges(const Frame& frame, std::uint64_t offset) {
+    std::vector<BodyGroups> groups;
+    for (const std::uint32_t body : frame.filter_changed) {
+      groups.push_back(frame.filter->groupsOf(body));
+    }
+    offset = connection_->frames.write(frame.filter_changed, offset);
+    connection_->frames.write(std::span<const BodyGroups>(groups), offset);
+  }
+
   [[nodiscard]] bool isOpen() const { return connection_ && connection_->alive(); }
 
   /// Starts the process unless it runs.

@@ -10,13 +10,17 @@
 
 namespace broadmark {
 
-/// Whether bodies appear and disappear in the scene, or some pairs are unwanted.
+/// Whether bodies appear and disappear in the scene, or some pairs are unwanted in some frames.
 bool isChangingWorld(const SceneInfo& scene);
 
 /// Adapts an algorithm that handles only boxes, in varying number: passes only
 /// active bodies to it, and drops unwanted pairs. Every frame must list the changes since the
-/// frame before.
+/// frame before. The filter may change.
 std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm);
+
+/// Adapts an algorithm that handles absent bodies and a fixed filter itself to a filter that
+/// changes: its filter changes for absent bodies only.
+std::unique_ptr<BroadPhase> withFilterChanges(std::unique_ptr<BroadPhase> algorithm);
 
 /// The number of worlds with bodies in the scene.
 std::size_t worldCount(const SceneInfo& scene);

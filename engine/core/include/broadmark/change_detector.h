@@ -1,4 +1,4 @@
-// Finds the bodies with boxes that differ from the frame before.
+// Finds the bodies with boxes or collision filters that differ from the frame before.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,14 @@
 
 namespace broadmark {
 
-/// Fills in Frame::changed for sources that do not provide it. Retains a copy of the boxes. A
-/// steady state allocates nothing.
+/// Fills in Frame::changed and Frame::filter_changed for sources that do not provide them. Retains
+/// a copy of the boxes. A steady state allocates nothing.
 class ChangeDetector {
  public:
   /// Returns the frame with the bodies changed since the last call; none in frame
   /// 0. Valid until the next call.
-  Frame complete(const Frame& frame) {
+  Frame complete(Frame frame) {
+    if (frame.filter != nullptr) completeFilter(frame);
     if (frame.changed) return frame;
     changed_.clear();
     if (frame.index == 0) {
@@ -26,12 +27,28 @@ class ChangeDetector {
       before_[body] = frame.boxes[body];
       changed_.push_back(body);
     }
-    return {frame.index, frame.boxes, changed_};
+    frame.changed = changed_;
+    return frame;
   }
 
  private:
+  void completeFilter(Frame& frame) {
+    const bool compares = frame.index > 0 && frame.filter_changed.empty();
+    if (compares && *frame.filter != filter_before_) {
+      filter_changed_.clear();
+      for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
+        if (frame.filter->groupsOf(body) == filter_before_.groupsOf(body)) continue;
+        filter_changed_.push_back(body);
+      }
+      frame.filter_changed = filter_changed_;
+    }
+    filter_before_ = *frame.filter;
+  }
+
   std::vector<Aabb> before_;
   std::vector<std::uint32_t> changed_;
+  CollisionFilter filter_before_;
+  std::vector<std::uint32_t> filter_changed_;
 };
 
 }  // namespace broadmark

@@ -31,7 +31,7 @@ class LayerMatrix {
   std::array<std::uint32_t, kLayers> rows_{};
 };
 
-/// A body's layer, world and tags, which do not change during a run.
+/// A body's layer, world and tags. The world does not change during a run.
 struct BodyGroups {
   static constexpr std::uint32_t kNoTag = std::numeric_limits<std::uint32_t>::max();
   using Tags = std::array<std::uint32_t, 3>;
@@ -45,12 +45,14 @@ struct BodyGroups {
 };
 
 /// The predicate wanted(a, b) over all bodies of a scene. By default all pairs are wanted. Cheap to
-/// copy: copies share immutable data.
+/// copy: copies share their data, which are immutable except for a LiveFilter's.
 class CollisionFilter {
  public:
   CollisionFilter() = default;
-  /// `bodies`: the groups of each body. Throws std::invalid_argument for a nonexistent layer.
-  CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix);
+  /// `bodies`: the groups of each body. `changes`: layers may change, so all of the matrix counts.
+  /// Throws std::invalid_argument for a nonexistent layer.
+  CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix,
+                  bool changes = false);
 
   /// Whether an overlap of these two bodies counts; symmetric, a != b.
   [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
@@ -58,9 +60,6 @@ class CollisionFilter {
   }
   /// Sufficient condition for all pairs to be wanted.
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
-
-  /// An identity: equal for copies of one filter, and unique during its lifetime.
-  [[nodiscard]] const void* address() const { return data_.get(); }
 
   [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
     return data_ == nullptr || data_->layers.empty() ? 0 : data_->layers[body];
@@ -75,11 +74,21 @@ class CollisionFilter {
 
   /// The filter of a subset of the bodies, in this order.
   [[nodiscard]] CollisionFilter of(std::span<const std::uint32_t> bodies) const;
+  /// This filter of `count` bodies, with new layers and tags for some of them: `groups`, in the
+  /// order of `changed`. Worlds and matrix remain. O(count).
+  [[nodiscard]] CollisionFilter with(std::span<const std::uint32_t> changed,
+                                     std::span<const BodyGroups> groups, std::size_t count) const;
+  /// The same, with the layers and tags that these bodies have in `source`.
+  [[nodiscard]] CollisionFilter with(std::span<const std::uint32_t> changed,
+                                     const CollisionFilter& source, std::size_t count) const;
 
   friend bool operator==(const CollisionFilter& a, const CollisionFilter& b);
 
  private:
+  friend class LiveFilter;
+
   struct Data {
+    bool changes = false;
     LayerMatrix matrix;
     std::vector<std::uint8_t> layers;
     std::vector<std::uint32_t> worlds;
@@ -93,11 +102,23 @@ class CollisionFilter {
       return tags.empty() || !shareTag(tags[a], tags[b]);
     }
     static bool shareTag(const BodyGroups::Tags& a, const BodyGroups::Tags& b);
-
-    friend bool operator==(const Data&, const Data&) = default;
   };
 
   std::shared_ptr<const Data> data_;  ///< null: every pair is wanted
+};
+
+/// A filter with layers and tags that change: all copies of filter() follow.
+class LiveFilter {
+ public:
+  LiveFilter(const CollisionFilter& first, std::size_t bodies);
+
+  /// Never CollisionFilter::wantsAll().
+  [[nodiscard]] CollisionFilter filter() const;
+  /// Gives a body the layer and the tags that it has in `source`.
+  void update(std::uint32_t body, const CollisionFilter& source);
+
+ private:
+  std::shared_ptr<CollisionFilter::Data> data_;
 };
 
 }  // namespace broadmark

@@ -23,10 +23,12 @@ struct SceneInfo {
   std::string name;         ///< "FreeFall"; printable ASCII, at most kMaxNameLength characters
   std::string object_type;  ///< "Cubes"; with the same limits
   std::uint32_t objects = 0;
-  std::uint32_t frames = 0;  ///< without the initial pose
-  Aabb world = {};           ///< bodies may protrude a little
-  bool all_present = true;   ///< no body is ever absent
-  CollisionFilter filter = {};
+  std::uint32_t frames = 0;     ///< without the initial pose
+  Aabb world = {};              ///< bodies may protrude a little
+  bool all_present = true;      ///< no body is ever absent
+  CollisionFilter filter = {};  ///< of the initial pose, and of all frames unless filter_changes
+  /// Layers and tags of bodies may change from frame to frame; their worlds and the matrix do not.
+  bool filter_changes = false;
 
   friend bool operator==(const SceneInfo&, const SceneInfo&) = default;
 };
@@ -40,7 +42,16 @@ struct Frame {
   /// report changes, in all frames alike. Algorithms always get them, detected before the clock
   /// starts if necessary.
   std::optional<std::span<const std::uint32_t>> changed = {};
+  /// The collision filter of this frame, only if SceneInfo::filter_changes; else null: the scene's.
+  const CollisionFilter* filter = nullptr;
+  /// The bodies with other layers or tags than in frame `index` - 1, ascending, whether present or
+  /// not. Empty if the source does not report them. Algorithms always get them, as `changed`.
+  std::span<const std::uint32_t> filter_changed = {};
 
+  /// The collision filter of this frame, which is one of this scene.
+  [[nodiscard]] const CollisionFilter& filterIn(const SceneInfo& scene) const {
+    return filter == nullptr ? scene.filter : *filter;
+  }
   /// The ids of the bodies that are present, ascending.
   [[nodiscard]] std::vector<std::uint32_t> presentBodies() const;
 };
@@ -78,12 +89,16 @@ class IndexedFrames : public FrameSource {
   virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
   /// The changes of the last frame read, as Frame::changed.
   [[nodiscard]] virtual std::optional<std::span<const std::uint32_t>> changed() const { return {}; }
+  /// The filter of the last frame read, as Frame::filter.
+  [[nodiscard]] virtual const CollisionFilter* filter() const { return nullptr; }
+  /// The changes of the filter in the last frame read, as Frame::filter_changed.
+  [[nodiscard]] virtual std::span<const std::uint32_t> filterChanged() const { return {}; }
 
  private:
   std::uint32_t position_ = 0;
 };
 
-/// All frames of a source, held in memory: 32 · objects · (1 + frames) bytes.
+/// All frames of a source, held in memory: 32 · objects · (1 + frames) bytes, and each filter.
 class FrameList final : public IndexedFrames {
  public:
   explicit FrameList(FrameSource& source);
@@ -92,9 +107,14 @@ class FrameList final : public IndexedFrames {
 
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
+  [[nodiscard]] const CollisionFilter* filter() const override {
+    return filters_.empty() ? nullptr : &filters_[last_];
+  }
 
   SceneInfo scene_;
   LargeVector<Aabb> boxes_;
+  std::vector<CollisionFilter> filters_;  ///< by frame; empty unless filters change
+  std::uint32_t last_ = 0;                ///< frame
 };
 
 }  // namespace broadmark

@@ -17,8 +17,7 @@ class NonCollidingLayers {
  public:
   NonCollidingLayers() = default;
   /// Greedy: adds layers in descending order of population. Counts only `bodies`.
-  NonCollidingLayers(const CollisionFilter& filter, std::span<const std::uint32_t> bodies)
-      : filter_(filter) {
+  NonCollidingLayers(const CollisionFilter& filter, std::span<const std::uint32_t> bodies) {
     const LayerMatrix matrix = filter.matrix();
     std::array<std::size_t, LayerMatrix::kLayers> population{};
     for (const std::uint32_t body : bodies) ++population[filter.layerOf(body)];
@@ -35,14 +34,11 @@ class NonCollidingLayers {
   }
 
   [[nodiscard]] std::size_t bodyCount() const { return body_count_; }
-  [[nodiscard]] bool contains(std::uint32_t body) const { return members_[filter_.layerOf(body)]; }
-  /// Whether any of the layers collides with the layer of the body.
-  [[nodiscard]] bool collideWith(std::uint32_t body) const {
-    return collides_[filter_.layerOf(body)];
-  }
+  [[nodiscard]] bool contains(std::size_t layer) const { return members_[layer]; }
+  /// Whether any of the layers collides with this one.
+  [[nodiscard]] bool collideWith(std::size_t layer) const { return collides_[layer]; }
 
  private:
-  CollisionFilter filter_;
   std::size_t body_count_ = 0;
   std::array<bool, LayerMatrix::kLayers> members_{};
   std::array<bool, LayerMatrix::kLayers> collides_{};

@@ -17,7 +17,7 @@
 
 namespace broadmark {
 
-/// Computes correct answers, and caches them within a budget. The key is the boxes' hash and the
+/// Computes correct answers, and caches them within a budget. The key is the hash of boxes and
 /// filter: two scenes may share an oracle, and equal frames share an answer.
 class Oracle {
  public:
@@ -34,14 +34,13 @@ class Oracle {
 
  private:
   struct Answer {
-    CollisionFilter filter;
     PairDigest digest;
     std::optional<std::vector<Pair>> pairs;  ///< nullopt if beyond the budget
   };
   /// With `with_pairs`, the pairs are in the answer, or else in scratch_.
   Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter, bool with_pairs);
 
-  std::map<std::pair<HashValue, const void*>, Answer> answers_;
+  std::map<HashValue, Answer> answers_;
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
   std::size_t max_pairs_;
