@@ -80,7 +80,9 @@ std::vector<std::string> boxRecordingExtensions() {
   return all;
 }
 
-bool fitsAabbs(const SceneInfo& scene) { return scene.all_present && scene.filter.wantsAll(); }
+bool fitsAabbs(const SceneInfo& scene) {
+  return scene.all_present && scene.filter.wantsAll() && !scene.filter_changes;
+}
 
 std::string_view recordingExtension(const SceneInfo& scene) {
   return fitsAabbs(scene) ? kAabbsExtension : kBroadmarkExtension;

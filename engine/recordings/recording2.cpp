@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "broadmark/error.h"
 #include "recording2_header.h"
@@ -36,6 +37,10 @@ Recording2Reader::Recording2Reader(FileDescriptor file, std::string name)
   open();
   boxes_.resize(scene().objects);
   ids_.resize(alignedBytes(sizeof(std::uint32_t) * scene().objects) / sizeof(std::uint32_t));
+  if (scene().filter_changes) {
+    filter_ids_.resize(ids_.size());
+    groups_.resize(scene().objects);
+  }
   piece_.resize(
       alignedBytes(sizeof(PackedBox) * std::min<std::uint64_t>(kPieceRows, boxes_.size())));
 }
@@ -73,7 +78,7 @@ void Recording2Reader::open() {
   if (hasher_.value() != end.hash) {
     throwInputError(name(), "header or index: damaged: wrong checksum");
   }
-  checkIndex(frames_offset, end.index_offset);
+  checkIndex(frames_offset, end.index_offset - filterCountBytes(scene()));
 }
 
 std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t index_offset) {
@@ -88,7 +93,9 @@ std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t ind
   const std::uint64_t offset = sizeof(RecordingStart) + size;
   const std::uint64_t last = bytes() - sizeof(RecordingEnd);
   const std::uint64_t index_bytes = sizeof(RecordedFrame) * (std::uint64_t{1} + scene.frames);
-  if (offset + sizeof(PackedBox) * std::uint64_t{scene.objects} + index_bytes > last) {
+  if (offset + sizeof(PackedBox) * std::uint64_t{scene.objects} + index_bytes +
+          filterCountBytes(scene) >
+      last) {
     throwInputError(name(), "{} bytes is too short for {} objects and {} frames", bytes(),
                     scene.objects, scene.frames);
   }
@@ -108,6 +115,11 @@ std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t ind
 }
 
 void Recording2Reader::readIndex(std::uint64_t offset) {
+  const std::uint64_t count_bytes = filterCountBytes(scene());
+  filter_counts_.resize(count_bytes / sizeof(std::uint32_t));
+  const auto raw_counts = std::as_writable_bytes(std::span(filter_counts_));
+  read(offset - count_bytes, raw_counts);
+  hasher_.add(raw_counts);
   index_.resize(std::size_t{1} + scene().frames);
   const auto raw = std::as_writable_bytes(std::span(index_));
   read(offset, raw);
@@ -119,16 +131,18 @@ void Recording2Reader::checkIndex(std::uint64_t begin, std::uint64_t end) const 
   for (std::uint32_t i = 0; i < index_.size(); ++i) {
     const auto& [start, changed, key, hash] = index_[i];
     const bool whole = key == i;
-    const bool is_valid = start == offset && changed <= scene().objects &&
-                          (i > 0 || (whole && changed == 0)) && (whole || key == index_[i - 1].key);
+    const std::uint32_t filter_changed = filter_counts_.empty() ? 0 : filter_counts_[i];
+    const bool is_valid =
+        start == offset && changed <= scene().objects && filter_changed <= scene().objects &&
+        (i > 0 || (whole && changed + filter_changed == 0)) && (whole || key == index_[i - 1].key);
     if (!is_valid) {
-      throw InputError(
-          fmt::format("{}: byte {}: index: frame {} cannot be at "
-                      "byte {} with {} changed bodies and "
-                      "key frame {}",
-                      name(), end + sizeof(RecordedFrame) * i, i, start, changed, key));
+      throw InputError(fmt::format(
+          "{}: byte {}: index: frame {} cannot be at byte {} with {} changed bodies, {} changed "
+          "filters and key frame {}",
+          name(), end + filterCountBytes(scene()) + sizeof(RecordedFrame) * i, i, start, changed,
+          filter_changed, key));
     }
-    offset += FrameLayout(changed, whole, scene().objects).bytes();
+    offset += layoutOf(i).bytes();
     if (offset > end) break;
   }
   if (offset != end) {
@@ -137,12 +151,21 @@ void Recording2Reader::checkIndex(std::uint64_t begin, std::uint64_t end) const 
   }
 }
 
+FrameLayout Recording2Reader::layoutOf(std::uint32_t index) const {
+  std::optional<std::uint32_t> filter_changed;
+  if (index > 0 && scene().filter_changes) filter_changed = filter_counts_[index];
+  return {index_[index].changed, filter_changed, index_[index].key == index, scene().objects};
+}
+
 std::span<const Aabb> Recording2Reader::readBoxes(std::uint32_t index) {
   if (current_ == index) return boxes_;
   const std::uint32_t key = index_[index].key;
   const bool is_ahead = current_ && key <= *current_ && *current_ < index;
   const bool next = current_ && *current_ + 1 == index;
   for (std::uint32_t i = is_ahead || next ? *current_ + 1 : key; i <= index; ++i) readFrame(i);
+  if (scene().filter_changes && !std::exchange(filter_is_current_, true)) {
+    filter_ = {groups_, scene().filter.matrix(), true};
+  }
   return boxes_;
 }
 
@@ -150,64 +173,70 @@ void Recording2Reader::readFrame(std::uint32_t index) {
   const bool follows = current_ && *current_ + 1 == index;
   current_.reset();  // invalid until the frame is complete
   hasher_.restart();
-  readIds(index);
+  changed_ = index_[index].changed;
+  readIds(index, index_[index].offset, changed_, ids_);
   if (index_[index].key == index) {
     readAllBoxes(index, follows);
   } else {
     readChangedBoxes(index);
   }
+  if (scene().filter_changes) readFilter(index, follows);
   if (hasher_.value() != index_[index].hash) fail(index, "");
   current_ = index;
 }
 
-void Recording2Reader::readIds(std::uint32_t index) {
-  const RecordedFrame& frame = index_[index];
-  const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
-  changed_ = frame.changed;
-  const auto raw = std::as_writable_bytes(std::span(ids_)).first(layout.idBytes());
-  read(frame.offset, raw);
+void Recording2Reader::readIds(std::uint32_t index, std::uint64_t offset, std::uint32_t count,
+                               std::vector<std::uint32_t>& ids) {
+  const RowsLayout layout(count, false, scene().objects);
+  const auto raw = std::as_writable_bytes(std::span(ids)).first(layout.idBytes());
+  read(offset, raw);
   hasher_.add(raw);
   if (layout.ids == 0) {
-    std::iota(ids_.begin(), ids_.begin() + changed_, 0U);
+    std::iota(ids.begin(), ids.begin() + count, 0U);
     return;
   }
   std::uint32_t unordered = 0;
-  for (std::uint32_t i = 1; i < changed_; ++i) {
-    unordered |= static_cast<std::uint32_t>(ids_[i] <= ids_[i - 1]);
+  for (std::uint32_t i = 1; i < count; ++i) {
+    unordered |= static_cast<std::uint32_t>(ids[i] <= ids[i - 1]);
   }
-  if (unordered == 0 && ids_[changed_ - 1] < scene().objects) return;
-  for (std::uint32_t i = 0; i < changed_; ++i) {
-    if (ids_[i] < scene().objects && (i == 0 || ids_[i - 1] < ids_[i])) continue;
+  if (unordered == 0 && ids[count - 1] < scene().objects) return;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (ids[i] < scene().objects && (i == 0 || ids[i - 1] < ids[i])) continue;
     fail(index, fmt::format("byte {}: body {} among the changed ones: they are "
                             "expected to ascend "
                             "and to be below {}",
-                            frame.offset + sizeof(std::uint32_t) * i, ids_[i], scene().objects));
+                            offset + sizeof(std::uint32_t) * i, ids[i], scene().objects));
   }
 }
 
 template <class Visit>
-void Recording2Reader::readRows(std::uint32_t index, Visit&& visit) {
-  const RecordedFrame& frame = index_[index];
-  const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
-  std::uint64_t offset = frame.offset + layout.idBytes();
-  for (std::uint64_t first = 0; first < layout.rows; first += kPieceRows) {
-    const std::uint64_t rows = std::min(kPieceRows, layout.rows - first);
-    const auto raw = std::span(piece_).first(alignedBytes(sizeof(PackedBox) * rows));
+void Recording2Reader::readRows(std::uint64_t offset, std::uint64_t count, std::uint64_t row_bytes,
+                                Visit&& visit) {
+  for (std::uint64_t first = 0; first < count; first += kPieceRows) {
+    const std::uint64_t rows = std::min(kPieceRows, count - first);
+    const auto raw = std::span(piece_).first(alignedBytes(row_bytes * rows));
     read(offset, raw);
     hasher_.add(raw);
     offset += raw.size();
-    for (std::uint64_t row = 0; row < rows; ++row) {
-      const Aabb box = unpacked(raw.data() + sizeof(PackedBox) * row);
-      if (!isRecordable(box, scene().all_present)) failAt(index, first + row, box);
-      visit(first + row, box);
-    }
+    for (std::uint64_t row = 0; row < rows; ++row) visit(first + row, raw.data() + row_bytes * row);
   }
+}
+
+template <class Visit>
+void Recording2Reader::readBoxRows(std::uint32_t index, Visit&& visit) {
+  const FrameLayout layout = layoutOf(index);
+  readRows(index_[index].offset + layout.boxes.idBytes(), layout.boxes.rows, sizeof(PackedBox),
+           [&](std::uint64_t row, const std::byte* raw) {
+             const Aabb box = unpacked(raw);
+             if (!isRecordable(box, scene().all_present)) failAt(index, row, box);
+             visit(row, box);
+           });
 }
 
 void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
   // Consumers of `changed` would miss an unlisted change.
   if (follows && changed_ < scene().objects) {
-    readRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body, const Aabb& box) mutable {
+    readBoxRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body, const Aabb& box) mutable {
       if (listed < changed_ && ids_[listed] == body) {
         ++listed;
       } else if (!sameBits(box, boxes_[body])) {
@@ -218,12 +247,47 @@ void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
       boxes_[body] = box;
     });
   } else {
-    readRows(index, [&](std::uint64_t body, const Aabb& box) { boxes_[body] = box; });
+    readBoxRows(index, [&](std::uint64_t body, const Aabb& box) { boxes_[body] = box; });
   }
 }
 
 void Recording2Reader::readChangedBoxes(std::uint32_t index) {
-  readRows(index, [&](std::uint64_t row, const Aabb& box) { boxes_[ids_[row]] = box; });
+  readBoxRows(index, [&](std::uint64_t row, const Aabb& box) { boxes_[ids_[row]] = box; });
+}
+
+void Recording2Reader::readFilter(std::uint32_t index, bool follows) {
+  filter_changed_ = filter_counts_[index];
+  if (index == 0) {
+    for (std::uint32_t body = 0; body < groups_.size(); ++body) {
+      groups_[body] = scene().filter.groupsOf(body);
+    }
+    filter_is_current_ = false;
+    return;
+  }
+  const FrameLayout layout = layoutOf(index);
+  const std::uint64_t offset = index_[index].offset + layout.boxBytes();
+  readIds(index, offset, filter_changed_, filter_ids_);
+  const bool whole = index_[index].key == index;
+  if (filter_changed_ > 0 || (whole && !follows)) filter_is_current_ = false;
+  readRows(offset + layout.groups.idBytes(), layout.groups.rows, sizeof(PackedGroups),
+           [&, listed = std::uint32_t{0}](std::uint64_t row, const std::byte* raw) mutable {
+             PackedGroups values;
+             std::memcpy(values.data(), raw, sizeof values);
+             const std::uint64_t body = whole ? row : filter_ids_[row];
+             if (values[0] >= LayerMatrix::kLayers) {
+               fail(index, fmt::format("body {}: is in layer {}: there are layers 0 to {}", body,
+                                       values[0], LayerMatrix::kLayers - 1));
+             }
+             const bool is_listed = listed < filter_changed_ && filter_ids_[listed] == body;
+             if (is_listed) ++listed;
+             if (whole && follows && !is_listed && values != packed(groups_[body])) {
+               fail(index, fmt::format("body {}: its layer or tags differ from the frame before, "
+                                       "but it is not among those with changed filters",
+                                       body));
+             }
+             groups_[body].layer = static_cast<std::uint8_t>(values[0]);
+             groups_[body].tags = {values[1], values[2], values[3]};
+           });
 }
 
 void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const Aabb& box) {
@@ -231,16 +295,16 @@ void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const Aabb
 }
 
 void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const std::string& what) {
-  const RecordedFrame& frame = index_[index];
-  const bool whole = frame.key == index;
-  const FrameLayout layout(frame.changed, whole, scene().objects);
-  fail(index, fmt::format("body {} (byte {}): {}", whole ? row : ids_[row],
-                          frame.offset + layout.idBytes() + sizeof(PackedBox) * row, what));
+  const bool whole = index_[index].key == index;
+  fail(index,
+       fmt::format("body {} (byte {}): {}", whole ? row : ids_[row],
+                   index_[index].offset + layoutOf(index).boxes.idBytes() + sizeof(PackedBox) * row,
+                   what));
 }
 
 void Recording2Reader::fail(std::uint32_t index, const std::string& what) {
   const RecordedFrame& frame = index_[index];
-  const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
+  const FrameLayout layout = layoutOf(index);
   hasher_.restart();
   for (std::uint64_t done = 0; done < layout.bytes(); done += piece_.size()) {
     const auto raw =

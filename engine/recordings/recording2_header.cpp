@@ -16,6 +16,8 @@ namespace broadmark {
 namespace {
 
 constexpr std::string_view kSchema = "broadmark-recording/2";
+/// With filter changes, which older readers would ignore.
+constexpr std::string_view kFilterChangesSchema = "broadmark-recording/2.1";
 
 /// A per-body array that a header may announce: its element size, and the access to a filter's
 /// array and to a body's value.
@@ -132,7 +134,7 @@ std::string recordingFault(const Aabb& box, bool all_present) {
 std::vector<std::byte> recording2Header(const SceneInfo& scene, const RecordingOrigin& origin) {
   requireNames(scene);
   Json json;
-  json["schema"] = kSchema;
+  json["schema"] = scene.filter_changes ? kFilterChangesSchema : kSchema;
   json["name"] = scene.name;
   json["object_type"] = scene.object_type;
   json["objects"] = scene.objects;
@@ -167,9 +169,11 @@ std::vector<std::byte> recording2Header(const SceneInfo& scene, const RecordingO
 
 Recording2Header::Recording2Header(std::string_view text, const std::string& name)
     : json_(parseJson(text, name)), fields_(json_, name) {
-  if (const std::string schema = fields_.text("schema"); schema != kSchema) {
-    throw InputError(fmt::format("{}: '{}' is expected, not '{}'", fields_.path("schema"), kSchema,
-                                 onOneLine(schema)));
+  const std::string schema = fields_.text("schema");
+  filter_changes_ = schema == kFilterChangesSchema;
+  if (schema != kSchema && !filter_changes_) {
+    throw InputError(fmt::format("{}: '{}' or '{}' is expected, not '{}'", fields_.path("schema"),
+                                 kSchema, kFilterChangesSchema, onOneLine(schema)));
   }
 }
 
@@ -179,7 +183,8 @@ SceneInfo Recording2Header::scene() const {
           .objects = objects(),
           .frames = fields_.integer<std::uint32_t>("frames"),
           .world = worldIn(fields_),
-          .all_present = fields_.boolean("all_present")};
+          .all_present = fields_.boolean("all_present"),
+          .filter_changes = filter_changes_};
 }
 
 RecordingOrigin Recording2Header::origin() const {
@@ -214,7 +219,7 @@ CollisionFilter Recording2Header::filter(std::span<const std::byte> raw) const {
                                  fields_.name(), unknown - bodies.begin(), unknown->layer,
                                  LayerMatrix::kLayers - 1));
   }
-  return {bodies, matrixIn(fields_)};
+  return {bodies, matrixIn(fields_), filter_changes_};
 }
 
 }  // namespace broadmark

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,13 @@ using PackedBox = std::array<float, 6>;
 
 inline PackedBox packed(const Aabb& box) {
   return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
+}
+
+/// A body's layer and tags in file layout. (Its world never changes.)
+using PackedGroups = std::array<std::uint32_t, 4>;
+
+inline PackedGroups packed(const BodyGroups& groups) {
+  return {groups.layer, groups.tags[0], groups.tags[1], groups.tags[2]};
 }
 
 /// Loads each corner of a packed box as a SIMD register: the subsequent checks take a third
@@ -56,25 +64,50 @@ struct RecordingEnd {
 
 inline constexpr std::uint64_t kRecordingAlignment = 32;
 static_assert(sizeof(RecordingStart) == 16 && sizeof(RecordedFrame) == kRecordingAlignment &&
-              sizeof(RecordingEnd) == kRecordingAlignment && sizeof(PackedBox) == 24);
+              sizeof(RecordingEnd) == kRecordingAlignment && sizeof(PackedBox) == 24 &&
+              sizeof(PackedGroups) == 16);
 
 constexpr std::uint64_t alignedBytes(std::uint64_t bytes) {
   return (bytes + kRecordingAlignment - 1) / kRecordingAlignment * kRecordingAlignment;
 }
 
-/// The layout of a frame: its ids, then its boxes. No ids if all bodies changed.
-struct FrameLayout {
-  std::uint64_t ids;
-  std::uint64_t rows;
+/// The layout of ids and their rows. No ids if all bodies changed.
+struct RowsLayout {
+  std::uint64_t ids = 0;
+  std::uint64_t rows = 0;
 
-  FrameLayout(std::uint32_t changed, bool whole, std::uint32_t objects)
+  RowsLayout() = default;
+  RowsLayout(std::uint32_t changed, bool whole, std::uint32_t objects)
       : ids(changed < objects ? changed : 0), rows(whole ? objects : changed) {}
 
   [[nodiscard]] std::uint64_t idBytes() const { return alignedBytes(sizeof(std::uint32_t) * ids); }
+};
+
+/// The layout of a frame: changed boxes, then, if the filter changes, changed layers and tags.
+struct FrameLayout {
+  RowsLayout boxes;
+  RowsLayout groups;
+
+  /// `filter_changed`: nullopt in frame 0, which has the header's filter, and if no filter changes.
+  FrameLayout(std::uint32_t changed, std::optional<std::uint32_t> filter_changed, bool whole,
+              std::uint32_t objects)
+      : boxes(changed, whole, objects) {
+    if (filter_changed) groups = {*filter_changed, whole, objects};
+  }
+
+  [[nodiscard]] std::uint64_t boxBytes() const {
+    return boxes.idBytes() + alignedBytes(sizeof(PackedBox) * boxes.rows);
+  }
   [[nodiscard]] std::uint64_t bytes() const {
-    return idBytes() + alignedBytes(sizeof(PackedBox) * rows);
+    return boxBytes() + groups.idBytes() + alignedBytes(sizeof(PackedGroups) * groups.rows);
   }
 };
+
+/// Bytes of the number of filter changes in each frame, which precede the index if filters change.
+constexpr std::uint64_t filterCountBytes(const SceneInfo& scene) {
+  if (!scene.filter_changes) return 0;
+  return alignedBytes(sizeof(std::uint32_t) * (std::uint64_t{1} + scene.frames));
+}
 
 /// The fault of a box; "": none.
 std::string recordingFault(const Aabb& box, bool all_present);
@@ -109,6 +142,7 @@ class Recording2Header {
 
   Json json_;
   JsonFields fields_;
+  bool filter_changes_ = false;
 };
 
 }  // namespace broadmark

@@ -14,10 +14,13 @@ namespace broadmark {
 Selection selectionOf(const SceneInfo& scene, std::vector<std::uint32_t> bodies,
                       std::vector<std::uint32_t> frames) {
   CollisionFilter filter = scene.filter.of(bodies);
+  std::vector<std::uint32_t> filter_changes;
+  if (scene.filter_changes) filter_changes = bodies;
   return {.bodies = std::move(bodies),
           .frames = std::move(frames),
           .all_present = scene.all_present,
-          .filter = std::move(filter)};
+          .filter = std::move(filter),
+          .filter_changes = std::move(filter_changes)};
 }
 
 Selection selectAll(const SceneInfo& scene, std::uint32_t last_frame) {
@@ -35,12 +38,31 @@ SubRecording::SubRecording(IndexedFrames& whole, Selection part, std::string nam
   scene_.frames = static_cast<std::uint32_t>(part_.frames.size() - 1);
   scene_.all_present = part_.all_present;
   scene_.filter = part_.filter;
+  scene_.filter_changes = whole.scene().filter_changes && !part_.filter_changes.empty();
+  if (scene_.filter_changes) scene_.filter = filterFrom(whole_.at(part_.frames.front()));
   boxes_.resize(scene_.objects);
+}
+
+CollisionFilter SubRecording::filterFrom(const Frame& frame) const {
+  const CollisionFilter& filter = frame.filterIn(whole_.scene());
+  std::vector<std::uint32_t> changed;
+  std::vector<BodyGroups> groups;
+  for (std::uint32_t i = 0; i < part_.bodies.size(); ++i) {
+    if (!std::ranges::binary_search(part_.filter_changes, part_.bodies[i])) continue;
+    changed.push_back(i);
+    groups.push_back(filter.groupsOf(part_.bodies[i]));
+  }
+  return part_.filter.with(changed, groups, part_.bodies.size());
 }
 
 std::span<const Aabb> SubRecording::readBoxes(std::uint32_t index) {
   const std::uint32_t number = part_.frames[index];
   const Frame frame = whole_.at(number);
+  if (scene_.filter_changes && (whole_filter_ != frame.filterIn(whole_.scene()) || !has_filter_)) {
+    whole_filter_ = frame.filterIn(whole_.scene());
+    filter_ = filterFrom(frame);
+    has_filter_ = true;
+  }
   for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = frame.boxes[part_.bodies[i]];
   for (const Filling& filling : part_.filled) {
     if (number < filling.first || number > filling.last) continue;

@@ -62,6 +62,8 @@ std::optional<std::span<const std::uint32_t>> SweptFrames::changed() const {
 
 void SweptFrames::begin(std::uint32_t index) {
   const Frame frame = frames_->at(index);
+  filter_ = frame.filter;
+  filter_changed_ = frame.filter_changed;
   reports_changes_ = frame.changed.has_value();
   before_.assign(frame.boxes.begin(), frame.boxes.end());
   for (std::size_t body = 0; body < boxes_.size(); ++body) {
@@ -75,6 +77,8 @@ void SweptFrames::begin(std::uint32_t index) {
 
 void SweptFrames::advance(std::uint32_t index) {
   const Frame frame = frames_->at(index);
+  filter_ = frame.filter;
+  filter_changed_ = frame.filter_changed;
   if (!frame.changed) {
     for (std::size_t body = 0; body < boxes_.size(); ++body) {
       boxes_[body] = sweptBox(before_[body], frame.boxes[body]);

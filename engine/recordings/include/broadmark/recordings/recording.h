@@ -140,12 +140,13 @@ class RecordingWriter {
   explicit RecordingWriter(const SceneInfo& scene);
   ~RecordingWriter();
 
-  /// Appends a set of boxes; the first is the initial pose. Throws InputError if a box is not
-  /// finite or inverted (a simulation that blew up), except for absent bodies, or if the disk is
-  /// full.
+  /// Appends a set of boxes under the scene's filter; the first is the initial pose. Throws
+  /// InputError if a box is not finite or inverted (a simulation that blew up), except for absent
+  /// bodies, or if the disk is full.
   void write(std::span<const Aabb> boxes);
   /// Appends the next frame of a source, all frames of which must be written. With Frame::changed,
-  /// the writer of a .broadmark recording reads only the changed boxes.
+  /// the writer of a .broadmark recording reads only the changed boxes. Throws std::logic_error for
+  /// a filter that the scene does not announce.
   void write(const Frame& frame);
   /// Completes the recording and renames it to its path. Requires exactly 1 + frames written sets.
   /// Returns the recording's hash, as Recording::hash().

@@ -17,6 +17,8 @@
 
 namespace broadmark {
 
+struct FrameLayout;
+
 /// A frame's index entry, in file layout.
 struct RecordedFrame {
   std::uint64_t offset;   ///< of its first byte
@@ -25,7 +27,7 @@ struct RecordedFrame {
   HashValue hash;         ///< of its bytes
 };
 
-/// Reads a .broadmark recording. Absent bodies have kEmptyBox; Frame::changed is always set. The
+/// Reads a .broadmark recording. Absent bodies have kEmptyBox; all changes are listed. The
 /// next frame costs its changes; any other frame at most two whole frames and its changes.
 class Recording2Reader final : public Recording {
  public:
@@ -40,21 +42,34 @@ class Recording2Reader final : public Recording {
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override {
     return std::span(ids_).first(changed_);
   }
+  [[nodiscard]] const CollisionFilter* filter() const override {
+    return scene().filter_changes ? &filter_ : nullptr;
+  }
+  [[nodiscard]] std::span<const std::uint32_t> filterChanged() const override {
+    return std::span(filter_ids_).first(filter_changed_);
+  }
 
   /// Reads and validates header and index.
   void open();
   /// Reads the header of `size` bytes. Returns the offset of the frames.
   std::uint64_t readHeader(std::uint64_t size, std::uint64_t index_offset);
   void readIndex(std::uint64_t offset);
+  [[nodiscard]] FrameLayout layoutOf(std::uint32_t index) const;
   void checkIndex(std::uint64_t begin, std::uint64_t end) const;
   /// Advances boxes_ to a frame: a key frame, or the successor of current_.
   void readFrame(std::uint32_t index);
-  void readIds(std::uint32_t index);
+  /// Reads the `count` changed ids at an offset into `ids`.
+  void readIds(std::uint32_t index, std::uint64_t offset, std::uint32_t count,
+               std::vector<std::uint32_t>& ids);
   void readAllBoxes(std::uint32_t index, bool follows);
   void readChangedBoxes(std::uint32_t index);
+  void readFilter(std::uint32_t index, bool follows);
   /// Calls visit(row, box) for each box of a frame.
   template <class Visit>
-  void readRows(std::uint32_t index, Visit&& visit);
+  void readBoxRows(std::uint32_t index, Visit&& visit);
+  /// Calls visit(row, its bytes) for rows at an offset.
+  template <class Visit>
+  void readRows(std::uint64_t offset, std::uint64_t count, std::uint64_t row_bytes, Visit&& visit);
   /// Throws InputError: about the checksum if it is wrong, else with `what`.
   [[noreturn]] void fail(std::uint32_t index, const std::string& what);
   [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const std::string& what);
@@ -65,8 +80,15 @@ class Recording2Reader final : public Recording {
   LargeVector<Aabb> boxes_;
   std::vector<std::uint32_t> ids_;
   std::uint32_t changed_ = 0;             ///< number of valid entries
-  std::optional<std::uint32_t> current_;  ///< the frame in boxes_ and ids_
-  std::vector<std::byte> piece_;          ///< part of a frame being read
+  std::optional<std::uint32_t> current_;  ///< the frame in these and the following members
+  // If filters change.
+  std::vector<std::uint32_t> filter_counts_;  ///< by frame: bodies with a changed filter
+  std::vector<std::uint32_t> filter_ids_;
+  std::uint32_t filter_changed_ = 0;  ///< number of valid entries
+  std::vector<BodyGroups> groups_;
+  CollisionFilter filter_;          ///< of groups_
+  bool filter_is_current_ = false;  ///< groups_ have not changed since
+  std::vector<std::byte> piece_;    ///< part of a frame being read
   Hasher hasher_;
 };
 

@@ -29,11 +29,14 @@ struct Selection {
   std::vector<Filling> filled = {};   ///< with the recording's ids
   bool all_present = true;            ///< SceneInfo::all_present of the part
   CollisionFilter filter = {};        ///< of these bodies, in this order
+  /// Bodies with the recording's ids, ascending, that have its layers and tags in each frame
+  /// instead of the filter's.
+  std::vector<std::uint32_t> filter_changes = {};
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };
 
-/// Selects these bodies and frames, unchanged.
+/// Selects these bodies and frames, unchanged. Both lists are ascending.
 Selection selectionOf(const SceneInfo&, std::vector<std::uint32_t> bodies,
                       std::vector<std::uint32_t> frames);
 /// All bodies in frames 0…last.
@@ -49,11 +52,19 @@ class SubRecording final : public IndexedFrames {
 
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
+  [[nodiscard]] const CollisionFilter* filter() const override {
+    return scene_.filter_changes ? &filter_ : nullptr;
+  }
+  [[nodiscard]] CollisionFilter filterFrom(const Frame& frame) const;
 
   IndexedFrames& whole_;
   Selection part_;
   SceneInfo scene_;
   LargeVector<Aabb> boxes_;
+  // If filters change.
+  CollisionFilter filter_;        ///< of the last frame
+  CollisionFilter whole_filter_;  ///< the recording's in that frame
+  bool has_filter_ = false;       ///< a frame has been read
 };
 
 /// The name of a part of a scene: "FreeFall case".

@@ -35,6 +35,10 @@ class SweptFrames final : public IndexedFrames {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override;
+  [[nodiscard]] const CollisionFilter* filter() const override { return filter_; }
+  [[nodiscard]] std::span<const std::uint32_t> filterChanged() const override {
+    return filter_changed_;
+  }
   /// Starts with frame `index`, with boxes not swept yet.
   void begin(std::uint32_t index);
   /// Advances to frame `index`, the successor of `last_`.
@@ -51,6 +55,9 @@ class SweptFrames final : public IndexedFrames {
   std::vector<std::uint32_t> moved_;       ///< bodies that changed in frames_
   std::vector<std::uint32_t> candidates_;  ///< bodies that changed in this frame or the one before
   std::vector<std::uint32_t> changed_;     ///< bodies with changed swept boxes
+  // As in frames_, until its next frame.
+  const CollisionFilter* filter_ = nullptr;
+  std::span<const std::uint32_t> filter_changed_;
 };
 
 }  // namespace broadmark
