@@ -100,6 +100,10 @@ std::string formatFilter(const FilterStatistics& filter) {
   if (filter.tagged > 0) {
     text += fmt::format("  {} with tags\n", counted(filter.tagged, "body", "bodies"));
   }
+  if (filter.changed) {
+    text +=
+        fmt::format("  {} bodies a frame with a new layer or new tags\n", number(*filter.changed));
+  }
   return text;
 }
 

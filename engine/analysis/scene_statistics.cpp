@@ -44,36 +44,38 @@ Changes meanOf(std::span<const Changes> frames) {
 /// Bodies and pairs by layer, summed over frames.
 class FilterTally {
  public:
-  explicit FilterTally(const CollisionFilter& filter) : filter_(filter) {}
+  explicit FilterTally(const SceneInfo& scene) : scene_(scene) { addLayers(scene.filter); }
 
   void add(const Frame& frame, std::span<const Pair> pairs) {
     ++frames_;
+    const CollisionFilter& filter = frame.filterIn(scene_);
+    if (!frame.filter_changed.empty()) addLayers(filter);
+    changed_ += static_cast<double>(frame.filter_changed.size());
     for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
-      bodies_[filter_.layerOf(body)] += isEmpty(frame.boxes[body]) ? 0 : 1;
+      bodies_[filter.layerOf(body)] += isEmpty(frame.boxes[body]) ? 0 : 1;
     }
     for (const Pair pair : pairs) {
-      const auto [a, b] = std::minmax({filter_.layerOf(pair.a), filter_.layerOf(pair.b)});
+      const auto [a, b] = std::minmax({filter.layerOf(pair.a), filter.layerOf(pair.b)});
       pairs_[a][b] += 1;
     }
   }
 
-  [[nodiscard]] FilterStatistics statistics(std::uint32_t objects) const {
+  [[nodiscard]] FilterStatistics statistics() const {
     FilterStatistics statistics;
-    std::array<bool, LayerMatrix::kLayers> is_used{};
+    if (scene_.filter_changes) statistics.changed = changed_ / frames_;
     std::map<std::uint32_t, std::uint32_t> worlds;
-    for (std::uint32_t body = 0; body < objects; ++body) {
-      is_used[filter_.layerOf(body)] = true;
-      const BodyGroups groups = filter_.groupsOf(body);
+    for (std::uint32_t body = 0; body < scene_.objects; ++body) {
+      const BodyGroups groups = scene_.filter.groupsOf(body);
       statistics.largest_world = std::max(statistics.largest_world, ++worlds[groups.world]);
       statistics.tagged += groups.tags == BodyGroups::kNoTags ? 0 : 1;
     }
     statistics.worlds = static_cast<std::uint32_t>(worlds.size());
-    const LayerMatrix matrix = filter_.matrix();
-    for (std::size_t a = 0; a < is_used.size(); ++a) {
-      if (!is_used[a]) continue;
+    const LayerMatrix matrix = scene_.filter.matrix();
+    for (std::size_t a = 0; a < is_used_.size(); ++a) {
+      if (!is_used_[a]) continue;
       statistics.layers.push_back({a, bodies_[a] / frames_});
-      for (std::size_t b = a; b < is_used.size(); ++b) {
-        if (!is_used[b] || !matrix.collide(a, b)) continue;
+      for (std::size_t b = a; b < is_used_.size(); ++b) {
+        if (!is_used_[b] || !matrix.collide(a, b)) continue;
         statistics.layer_pairs.push_back({a, b, pairs_[a][b] / frames_});
       }
     }
@@ -84,8 +86,16 @@ class FilterTally {
   template <class T>
   using ByLayer = std::array<T, LayerMatrix::kLayers>;
 
-  CollisionFilter filter_;
+  void addLayers(const CollisionFilter& filter) {
+    for (std::uint32_t body = 0; body < scene_.objects; ++body) {
+      is_used_[filter.layerOf(body)] = true;
+    }
+  }
+
+  const SceneInfo& scene_;
+  ByLayer<bool> is_used_{};  ///< in some frame
   double frames_ = 0;
+  double changed_ = 0;
   ByLayer<double> bodies_{};
   ByLayer<ByLayer<double>> pairs_{};
 };
@@ -122,11 +132,13 @@ Json toJson(const FilterStatistics& filter) {
   for (const auto& [a, b, count] : filter.layer_pairs) {
     pairs.push_back({{"layers", {a, b}}, {"pairs", count}});
   }
-  return {{"layers", std::move(layers)},
-          {"layer_pairs", std::move(pairs)},
-          {"worlds", filter.worlds},
-          {"largest_world", filter.largest_world},
-          {"tagged", filter.tagged}};
+  Json json = {{"layers", std::move(layers)},
+               {"layer_pairs", std::move(pairs)},
+               {"worlds", filter.worlds},
+               {"largest_world", filter.largest_world},
+               {"tagged", filter.tagged}};
+  if (filter.changed) json["changed"] = *filter.changed;
+  return json;
 }
 
 }  // namespace
@@ -209,11 +221,12 @@ std::optional<SceneDescription> describe(FrameSource& source, int parts,
   const SceneInfo& scene = source.scene();
   std::vector<FrameStatistics> frames;
   std::vector<Aabb> before;
-  FilterTally tally(scene.filter);
+  const bool is_filtered = !scene.filter.wantsAll() || scene.filter_changes;
+  FilterTally tally(scene);
   const auto describe_frame = [&](const Frame& frame) {
-    const std::vector<Pair> pairs = sweptPairs(frame.boxes, scene.filter);
+    const std::vector<Pair> pairs = sweptPairs(frame.boxes, frame.filterIn(scene));
     frames.push_back(frameStatistics(scene, frame, before, pairs.size()));
-    if (!scene.filter.wantsAll() && (frame.index > 0 || scene.frames == 0)) {
+    if (is_filtered && (frame.index > 0 || scene.frames == 0)) {
       tally.add(frame, pairs);
     }
     before.assign(frame.boxes.begin(), frame.boxes.end());
@@ -222,7 +235,7 @@ std::optional<SceneDescription> describe(FrameSource& source, int parts,
   const std::span all(frames);
   SceneDescription description{
       .initial = rangeStatistics(all.first(1)), .parts = {}, .overall = {}};
-  if (!scene.filter.wantsAll()) description.filter = tally.statistics(scene.objects);
+  if (is_filtered) description.filter = tally.statistics();
   const auto updated = all.subspan(1);
   if (updated.empty()) return description;
   const int count = static_cast<int>(std::min<std::size_t>(updated.size(), parts));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -15,33 +16,62 @@ namespace {
 
 constexpr const char* kTemporaryName = "the frames simulated so far";
 
-/// Reads a file of boxes, frame after frame. Frames not written yet cannot be read.
-class TemporaryFrames final : public IndexedFrames {
+/// The collision filters of the frames so far; empty unless filters change.
+class FilterLog {
  public:
-  TemporaryFrames(SceneInfo scene, std::shared_ptr<const FileDescriptor> file)
-      : scene_(std::move(scene)), file_(std::move(file)), boxes_(scene_.objects) {}
+  void append(const CollisionFilter& filter) {
+    const std::lock_guard lock(mutex_);
+    filters_.push_back(filter);
+  }
+  [[nodiscard]] CollisionFilter at(std::uint32_t frame) const {
+    const std::lock_guard lock(mutex_);
+    return filters_.at(frame);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<CollisionFilter> filters_;
+};
+
+}  // namespace
+
+/// Shared by readers on any thread.
+struct FrameProvider::Written {
+  FileDescriptor boxes = unnamedFile();
+  FilterLog filters;
+
+  void append(const SceneInfo& scene, const Frame& frame) {
+    writeAll(boxes.get(), std::as_bytes(frame.boxes), kTemporaryName);
+    if (scene.filter_changes) filters.append(frame.filterIn(scene));
+  }
+};
+
+/// Reads the frames written so far. Frames not written yet cannot be read.
+class FrameProvider::TemporaryFrames final : public IndexedFrames {
+ public:
+  TemporaryFrames(SceneInfo scene, std::shared_ptr<const Written> written)
+      : scene_(std::move(scene)), written_(std::move(written)), boxes_(scene_.objects) {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
 
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
     const auto bytes = std::as_writable_bytes(std::span(boxes_));
-    if (readAll(file_->get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
+    if (readAll(written_->boxes.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
       throw InputError(fmt::format("{}: cannot read frame {}", kTemporaryName, index));
     }
+    if (scene_.filter_changes) filter_ = written_->filters.at(index);
     return boxes_;
+  }
+  [[nodiscard]] const CollisionFilter* filter() const override {
+    return scene_.filter_changes ? &filter_ : nullptr;
   }
 
   SceneInfo scene_;
-  std::shared_ptr<const FileDescriptor> file_;
+  std::shared_ptr<const Written> written_;
   std::vector<Aabb> boxes_;
+  CollisionFilter filter_;  ///< of the last frame read
 };
-
-void append(const FileDescriptor& file, std::span<const Aabb> boxes) {
-  writeAll(file.get(), std::as_bytes(boxes), kTemporaryName);
-}
-
-}  // namespace
 
 FrameProvider::FrameProvider(std::unique_ptr<Recording> recording, ParameterValues reading)
     : reading_(std::move(reading)),
@@ -51,21 +81,25 @@ FrameProvider::FrameProvider(std::unique_ptr<Recording> recording, ParameterValu
 FrameProvider::FrameProvider(std::unique_ptr<FrameSource> simulation, ParameterValues reading)
     : reading_(std::move(reading)), simulation_(std::move(simulation)) {
   const Frame first = simulation_->rewind();
-  store(simulation_->scene(), first.boxes);
+  store(simulation_->scene(), first);
 }
 
-FrameProvider::FrameProvider(SceneInfo scene, std::span<const Aabb> boxes) { store(scene, boxes); }
+FrameProvider::FrameProvider(SceneInfo scene, std::span<const Aabb> boxes) {
+  store(scene, {.boxes = boxes});
+}
 
-void FrameProvider::store(const SceneInfo& scene, std::span<const Aabb> first) {
-  file_ = std::make_shared<const FileDescriptor>(unnamedFile());
-  frames_ = adapted(std::make_unique<TemporaryFrames>(scene, file_), reading_);
-  append(*file_, first);
+FrameProvider::~FrameProvider() = default;
+
+void FrameProvider::store(const SceneInfo& scene, const Frame& first) {
+  written_ = std::make_shared<Written>();
+  frames_ = adapted(std::make_unique<TemporaryFrames>(scene, written_), reading_);
+  written_->append(scene, first);
 }
 
 void FrameProvider::simulateNext() {
   const std::optional<Frame> frame = simulation_->next();
   if (!frame) throw std::logic_error("simulated beyond the last frame");
-  append(*file_, frame->boxes);
+  written_->append(scene(), *frame);
   ++available_;
 }
 
@@ -79,17 +113,17 @@ scenes::AuthoredScene FrameProvider::authoredScene(std::uint32_t index) {
 }
 
 FrameOpener FrameProvider::opener() const {
-  if (!file_) {
+  if (!written_) {
     return [name = frames_->name(), reading = reading_](std::uint32_t /*last*/) {
       return adapted(openRecordingFile(name), reading);
     };
   }
   auto scene =
       std::make_shared<const SceneInfo>(simulation_ ? simulation_->scene() : this->scene());
-  return [scene = std::move(scene), file = file_, reading = reading_](std::uint32_t last) {
+  return [scene = std::move(scene), written = written_, reading = reading_](std::uint32_t last) {
     SceneInfo available = *scene;
     available.frames = last;
-    return adapted(std::make_unique<TemporaryFrames>(std::move(available), file), reading);
+    return adapted(std::make_unique<TemporaryFrames>(std::move(available), written), reading);
   };
 }
 

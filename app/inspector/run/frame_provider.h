@@ -27,6 +27,7 @@ class FrameProvider {
   explicit FrameProvider(std::unique_ptr<FrameSource> simulation, ParameterValues reading = {});
   /// A scene of a single frame; `scene.frames` is 0.
   FrameProvider(SceneInfo scene, std::span<const Aabb> boxes);
+  ~FrameProvider();
 
   /// `scene().frames` counts all frames, including those not simulated yet.
   [[nodiscard]] const SceneInfo& scene() const { return frames_->scene(); }
@@ -49,14 +50,17 @@ class FrameProvider {
   [[nodiscard]] FrameOpener opener() const;
 
  private:
+  struct Written;
+  class TemporaryFrames;
+
   /// Starts the temporary file with the first frame.
-  void store(const SceneInfo& scene, std::span<const Aabb> first);
+  void store(const SceneInfo& scene, const Frame& first);
 
   ParameterValues reading_;
   std::uint32_t available_ = 0;
   std::unique_ptr<IndexedFrames> frames_;
   std::unique_ptr<FrameSource> simulation_;
-  std::shared_ptr<const FileDescriptor> file_;  ///< read by frames_; null for a recording
+  std::shared_ptr<Written> written_;  ///< read by frames_; null for a recording
 };
 
 /// Opens a source; each call returns a new provider. Throws InputError.

@@ -24,16 +24,16 @@ std::vector<Trail> trailsOf(const SnapshotRequest& request) {
   return trails;
 }
 
-std::shared_ptr<const std::vector<Aabb>> boxesOf(FrameProvider& provider, std::uint32_t index) {
-  const Frame frame = provider.at(index);
-  return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
+std::shared_ptr<const std::vector<Aabb>> copyOf(std::span<const Aabb> boxes) {
+  return std::make_shared<const std::vector<Aabb>>(boxes.begin(), boxes.end());
 }
 
 CachedAnswer oracleAnswer(const SnapshotRequest& request, const Frame& frame, Oracle& oracle) {
   if (request.cache != nullptr) {
     if (auto cached = request.cache->find(0, frame.index)) return std::move(*cached);
   }
-  const std::span<const Pair> pairs = oracle.pairs(frame.boxes, request.provider.scene().filter);
+  const std::span<const Pair> pairs =
+      oracle.pairs(frame.boxes, frame.filterIn(request.provider.scene()));
   CachedAnswer answer{.pairs = {pairs.begin(), pairs.end()}, .checked = true};
   if (request.cache != nullptr) request.cache->insert(0, frame.index, answer);
   return answer;
@@ -102,10 +102,15 @@ std::shared_ptr<const Snapshot> captureSnapshot(const SnapshotRequest& request, 
   snapshot->scene = request.provider.scene();
   snapshot->frame = request.frame;
   snapshot->trails = trailsOf(request);
-  if (request.frame > 0) snapshot->boxes_before = boxesOf(request.provider, request.frame - 1);
-  snapshot->boxes = boxesOf(request.provider, request.frame);
+  if (request.frame > 0) {
+    snapshot->boxes_before = copyOf(request.provider.at(request.frame - 1).boxes);
+  }
+  const Frame provided = request.provider.at(request.frame);
+  snapshot->boxes = copyOf(provided.boxes);
   snapshot->present = countPresent(*snapshot->boxes);
-  const Frame frame{request.frame, *snapshot->boxes};
+  snapshot->scene.filter = provided.filterIn(request.provider.scene());
+  Frame frame{request.frame, *snapshot->boxes};
+  if (snapshot->scene.filter_changes) frame.filter = &snapshot->scene.filter;
   AlgorithmTrack* const track = request.track;
   const int number = track != nullptr ? track->spec().number : 0;
   CachedAnswer answer;

@@ -78,11 +78,13 @@ struct FilterStatistics {
     std::size_t b = 0;  ///< >= a
     double pairs = 0;   ///< mean per frame
   };
-  std::vector<Layer> layers;           ///< layers with bodies
+  std::vector<Layer> layers;           ///< layers with bodies in some frame
   std::vector<LayerPair> layer_pairs;  ///< all pairs of these layers that collide
   std::uint32_t worlds = 1;
   std::uint32_t largest_world = 0;  ///< its number of bodies, present or not
-  std::uint32_t tagged = 0;         ///< bodies with tags
+  std::uint32_t tagged = 0;         ///< bodies with tags in the initial pose
+  /// Bodies with a new layer or new tags; mean per frame; nullopt if the filter does not change.
+  std::optional<double> changed = {};
 };
 
 struct SceneDescription {
