@@ -159,10 +159,11 @@ class Torture {
   }
 
   static TortureRecording inMemory(IndexedFrames& recording) {
-    TortureRecording copy{recording.scene(), {}};
+    TortureRecording copy{.scene = recording.scene(), .frames = {}};
     for (std::uint32_t index = 0; index <= copy.scene.frames; ++index) {
-      const std::span<const Aabb> boxes = recording.at(index).boxes;
-      copy.frames.emplace_back(boxes.begin(), boxes.end());
+      const Frame frame = recording.at(index);
+      copy.frames.emplace_back(frame.boxes.begin(), frame.boxes.end());
+      if (copy.scene.filter_changes) copy.filters.push_back(frame.filterIn(copy.scene));
     }
     return copy;
   }

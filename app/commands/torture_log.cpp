@@ -42,7 +42,7 @@ Json toJson(const TortureKey& key, const TortureCount& count) {
           {"threads", key.threads},     {"answer", key.answer},
           {"world", key.world},         {"worlds", count.worlds},
           {"frames", count.frames},     {"changing", count.changing},
-          {"filtered", count.filtered}};
+          {"filtered", count.filtered}, {"filter_changes", count.filter_changes}};
 }
 
 void addCount(TortureCoverage& coverage, const JsonFields& json) {
@@ -51,7 +51,10 @@ void addCount(TortureCoverage& coverage, const JsonFields& json) {
       {.worlds = json.integer<std::uint64_t>("worlds"),
        .frames = json.integer<std::uint64_t>("frames"),
        .changing = json.integer<std::uint64_t>("changing"),
-       .filtered = json.integer<std::uint64_t>("filtered")};
+       .filtered = json.integer<std::uint64_t>("filtered"),
+       // Logs of older versions have none.
+       .filter_changes =
+           json.has("filter_changes") ? json.integer<std::uint64_t>("filter_changes") : 0};
 }
 
 /// Coverage of an algorithm.
@@ -83,18 +86,18 @@ std::string share(std::uint64_t part, std::uint64_t total) {
 
 std::string coverageTable(const TortureLog& log) {
   std::vector<std::vector<std::string>> table = {{"algorithm", "worlds", "frames", "kinds",
-                                                  "events", "come and go", "filtered", "threads",
-                                                  "instruction sets"}};
+                                                  "events", "come and go", "filtered",
+                                                  "new filters", "threads", "instruction sets"}};
   for (const auto& [algorithm, row] : coverageByAlgorithm(log.coverage)) {
     const TortureCount& count = row.count;
     table.push_back({algorithm, fmt::format("{}", count.worlds), fmt::format("{}", count.frames),
                      fmt::format("{} of {}", row.worlds.size(), tortureWorlds().size()),
                      share(row.events, count.frames), share(count.changing, count.frames),
-                     share(count.filtered, count.frames),
+                     share(count.filtered, count.frames), share(count.filter_changes, count.frames),
                      fmt::format("{}", fmt::join(row.threads, ", ")),
                      fmt::format("{}", fmt::join(row.isas, ", "))});
   }
-  return alignColumns(table, {false, true, true, true, true, true, true, false, false});
+  return alignColumns(table, {false, true, true, true, true, true, true, true, false, false});
 }
 
 }  // namespace

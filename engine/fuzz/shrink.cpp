@@ -1,6 +1,7 @@
 // Shrinks a failing case by delta debugging (delta_debugging.h): removes parts, large ones first,
 // as long as the rest still fails, until nothing can be removed: no single body, no frame, no
-// absence (filled with the body's box before or after), nothing of the collision filter.
+// absence (filled with the body's box before or after), no change of a body's filter, nothing of
+// the collision filter.
 //
 // Plain delta debugging would start with the whole recording. But most wrong answers have local
 // causes. So the wrong pair is tried first with few neighbours, then with increasingly many (and
@@ -56,9 +57,11 @@ Selection withBodies(const Selection& part, std::vector<std::uint32_t> bodies) {
   Selection remaining = part;
   remaining.filter = part.filter.of(positions(bodies, part.bodies));
   remaining.bodies = std::move(bodies);
-  std::erase_if(remaining.filled, [&](const Filling& filling) {
-    return !std::ranges::binary_search(remaining.bodies, filling.body);
-  });
+  const auto is_removed = [&](std::uint32_t body) {
+    return !std::ranges::binary_search(remaining.bodies, body);
+  };
+  std::erase_if(remaining.filled, [&](const Filling& filling) { return is_removed(filling.body); });
+  std::erase_if(remaining.filter_changes, is_removed);
   return remaining;
 }
 
@@ -74,6 +77,7 @@ Selection renumbered(const Selection& part, const Selection& origin) {
   Selection same = part;
   same.bodies = positions(part.bodies, origin.bodies);
   same.frames = positions(part.frames, origin.frames);
+  same.filter_changes = positions(part.filter_changes, origin.bodies);
   same.filled.clear();
   for (const Filling& filling : part.filled) {
     const std::uint32_t begin = positionOf(filling.first, origin.frames);
@@ -221,6 +225,7 @@ class Shrinker {
       smaller = removeFrames();
       smaller = removeBodies() || smaller;
       smaller = fillAbsences() || smaller;
+      smaller = removeFilterChanges() || smaller;
       smaller = simplifyFilterOfBest() || smaller;
     }
   }
@@ -302,6 +307,33 @@ class Shrinker {
     for (Body& body : bodies) end_absence(body, kEmptyBox);
     std::ranges::sort(found, {}, keyOf);
     return found;
+  }
+
+  /// Bodies that need not change keep the layer and tags of the last frame, or those of the first.
+  bool removeFilterChanges() {
+    bool removed = false;
+    for (const bool last : {true, false}) {
+      const Selection before = best_.part;
+      const CollisionFilter kept = filterOf(before, last ? before.frames.size() - 1 : 0);
+      removed = minimize(before.filter_changes, 0,
+                         [&](const std::vector<std::uint32_t>& left) {
+                           std::vector<std::uint32_t> fixed;
+                           std::ranges::set_difference(before.filter_changes, left,
+                                                       std::back_inserter(fixed));
+                           Selection part = before;
+                           part.filter_changes = left;
+                           part.filter = before.filter.with(positions(fixed, before.bodies), kept,
+                                                            before.bodies.size());
+                           return fails(part);
+                         }) ||
+                removed;
+    }
+    return removed;
+  }
+
+  CollisionFilter filterOf(const Selection& part, std::size_t frame) {
+    SubRecording source = framesOf(part);
+    return source.at(static_cast<std::uint32_t>(frame)).filterIn(source.scene());
   }
 
   bool simplifyFilterOfBest() {

@@ -1,4 +1,4 @@
-// Changes of a world besides its boxes: presence of bodies, and collision filters.
+// Changes of a world besides its boxes: presence of bodies, collision filters, and their changes.
 #pragma once
 
 #include <array>
@@ -118,6 +118,57 @@ inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64
                     })},
       {"all at once", make(mixed, any)},
   };
+}
+
+/// Whether a body gets another layer and other tags in a frame.
+using FilterChange = std::function<bool(std::uint32_t body, std::uint32_t frame)>;
+
+namespace filter_changes {
+
+/// One body in thirty in each frame.
+inline bool few(std::uint32_t body, std::uint32_t frame) { return (body + 7 * frame) % 30 == 0; }
+/// Half of the bodies in each frame.
+inline bool half(std::uint32_t body, std::uint32_t frame) {
+  return Random(body, frame + 1000).onceIn(2);
+}
+/// All bodies at once, now and then.
+inline bool allOrNone(std::uint32_t, std::uint32_t frame) { return frame % 3 == 1; }
+
+}  // namespace filter_changes
+
+struct NamedFilterChange {
+  std::string_view name;
+  bool (*changes)(std::uint32_t body, std::uint32_t frame);
+};
+inline constexpr std::array kFilterChanges = {
+    NamedFilterChange{"few", filter_changes::few},
+    NamedFilterChange{"half", filter_changes::half},
+    NamedFilterChange{"all or none", filter_changes::allOrNone},
+};
+
+/// The filters of frames 0 to `last`, n bodies in each. Each change gives a body the layer and tags
+/// that a random body had at first, or a random layer and tag.
+inline std::vector<CollisionFilter> changingFilters(const CollisionFilter& first, std::size_t n,
+                                                    std::uint32_t last, const FilterChange& changes,
+                                                    std::uint64_t seed) {
+  std::vector filters = {first};
+  for (std::uint32_t frame = 1; frame <= last; ++frame) {
+    Random random(seed, frame);
+    std::vector<std::uint32_t> changed;
+    std::vector<BodyGroups> groups;
+    for (std::uint32_t body = 0; body < n; ++body) {
+      if (!changes(body, frame)) continue;
+      changed.push_back(body);
+      const int other = random.integer(0, static_cast<int>(n) - 1);
+      groups.push_back(first.groupsOf(static_cast<std::uint32_t>(other)));
+      if (random.onceIn(2)) continue;
+      groups.back().layer = static_cast<std::uint8_t>(random.integer(0, 3));
+      groups.back().tags = BodyGroups::kNoTags;
+      groups.back().tags[1] = static_cast<std::uint32_t>(random.integer(0, 9));
+    }
+    filters.push_back(changed.empty() ? filters.back() : filters.back().with(changed, groups, n));
+  }
+  return filters;
 }
 
 }  // namespace broadmark::inputs

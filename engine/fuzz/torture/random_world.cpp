@@ -60,8 +60,14 @@ RandomWorld generatedWorld(Random& random) {
     removeAbsent(frames, random);
   }
   if (random.onceIn(3)) scene.filter = random.anyOf(inputs::filters(n, seed)).filter;
+  std::vector<CollisionFilter> filters;
+  if (random.onceIn(6)) {
+    filters = inputs::changingFilters(scene.filter, n, count,
+                                      random.anyOf(inputs::kFilterChanges).changes, seed);
+  }
   return {is_unrelated ? kUnrelated : std::string(kind.name),
-          std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames))};
+          std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames),
+                                                std::move(filters))};
 }
 
 /// Up to `max` consecutive integers below `count`, from a random start.
@@ -73,18 +79,21 @@ std::vector<std::uint32_t> randomRange(Random& random, std::uint32_t count, std:
 }
 
 /// The given bodies, in this order, and frames.
-template <class BoxesOf>
-std::unique_ptr<IndexedFrames> subset(SceneInfo scene, BoxesOf boxes_of,
+template <class FrameOf>
+std::unique_ptr<IndexedFrames> subset(SceneInfo scene, FrameOf frame_of,
                                       const std::vector<std::uint32_t>& bodies,
                                       const std::vector<std::uint32_t>& frames) {
   std::vector<std::vector<Aabb>> all;
-  for (const std::uint32_t frame : frames) {
-    const std::span<const Aabb> boxes = boxes_of(frame);
+  std::vector<CollisionFilter> filters;
+  for (const std::uint32_t index : frames) {
+    const Frame frame = frame_of(index);
     all.emplace_back();
-    for (const std::uint32_t body : bodies) all.back().push_back(boxes[body]);
+    for (const std::uint32_t body : bodies) all.back().push_back(frame.boxes[body]);
+    if (scene.filter_changes) filters.push_back(frame.filterIn(scene).of(bodies));
   }
   scene.filter = scene.filter.of(bodies);
-  return std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(all));
+  return std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(all),
+                                               std::move(filters));
 }
 
 /// All of a small recording; else some consecutive bodies, in some frames.
@@ -93,8 +102,12 @@ RandomWorld excerptOf(const TortureRecording& given, Random& random) {
   constexpr std::uint32_t kMaxFrames = 31;
   const std::vector<std::uint32_t> bodies = randomRange(random, given.scene.objects, kMaxBodies);
   const std::vector<std::uint32_t> frames = randomRange(random, given.scene.frames + 1, kMaxFrames);
-  const auto boxes_of = [&](std::uint32_t frame) { return std::span(given.frames[frame]); };
-  return {kGiven, subset(given.scene, boxes_of, bodies, frames)};
+  const auto frame_of = [&](std::uint32_t index) {
+    Frame frame{index, given.frames[index]};
+    if (given.scene.filter_changes) frame.filter = &given.filters[index];
+    return frame;
+  };
+  return {kGiven, subset(given.scene, frame_of, bodies, frames)};
 }
 
 }  // namespace
@@ -122,7 +135,7 @@ std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {
   std::vector<std::uint32_t> all(scene.frames + 1);
   std::iota(all.begin(), all.end(), 0U);
   return subset(
-      scene, [&](std::uint32_t frame) { return frames.at(frame).boxes; }, order, all);
+      scene, [&](std::uint32_t frame) { return frames.at(frame); }, order, all);
 }
 
 }  // namespace broadmark

@@ -117,7 +117,8 @@ class Round {
         {.worlds = 1,
          .frames = scene.frames,
          .changing = scene.all_present ? 0 : scene.frames,
-         .filtered = scene.filter.wantsAll() ? 0 : scene.frames};
+         .filtered = scene.filter.wantsAll() && !scene.filter_changes ? 0 : scene.frames,
+         .filter_changes = scene.filter_changes ? scene.frames : 0};
   }
 
   TortureRound makeFinding(TortureRound round, RandomWorld world, const Fault& fault) {
@@ -192,6 +193,7 @@ TortureCount& TortureCount::operator+=(const TortureCount& other) {
   frames += other.frames;
   changing += other.changing;
   filtered += other.filtered;
+  filter_changes += other.filter_changes;
   return *this;
 }
 

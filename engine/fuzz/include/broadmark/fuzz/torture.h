@@ -65,8 +65,9 @@ struct TortureKey {
 struct TortureCount {
   std::uint64_t worlds = 0;
   std::uint64_t frames = 0;
-  std::uint64_t changing = 0;  ///< number of frames in which bodies may appear or disappear
-  std::uint64_t filtered = 0;  ///< number of frames with unwanted pairs
+  std::uint64_t changing = 0;        ///< number of frames in which bodies may appear or disappear
+  std::uint64_t filtered = 0;        ///< number of frames with unwanted pairs
+  std::uint64_t filter_changes = 0;  ///< number of frames in which filters may change
 
   TortureCount& operator+=(const TortureCount&);
 };
@@ -75,6 +76,7 @@ using TortureCoverage = std::map<TortureKey, TortureCount>;
 struct TortureRecording {
   SceneInfo scene;
   std::vector<std::vector<Aabb>> frames;
+  std::vector<CollisionFilter> filters = {};  ///< by frame, if scene.filter_changes
 };
 
 struct TortureOptions {
