@@ -1,12 +1,15 @@
 #include "broadmark/scenes/bodies.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace broadmark::scenes {
 
 Bodies::Bodies(PhysicsEngine& engine, const SceneInfo& scene)
     : engine_(&engine),
+      initial_filter_(scene.filter),
       filter_(scene.filter),
+      filter_changes_(scene.filter_changes),
       bodies_(scene.objects),
       masses_(scene.objects),
       boxes_(scene.objects, kEmptyBox),
@@ -25,7 +28,7 @@ std::span<const std::uint32_t> Bodies::inEngine() {
 }
 
 PhysicsBody& Bodies::add(std::size_t id, BodyDescription description) {
-  const BodyGroups groups = filter_.groupsOf(static_cast<std::uint32_t>(id));
+  const BodyGroups groups = initial_filter_.groupsOf(static_cast<std::uint32_t>(id));
   description.layer = groups.layer;
   description.world = groups.world;
   bodies_[id] = &engine_->addBody(description);
@@ -44,7 +47,25 @@ void Bodies::place(std::size_t id, const Shape& shape, const Pose& pose) {
   poses_[id] = pose;
 }
 
+void Bodies::setLayer(std::size_t id, std::uint8_t layer) {
+  new_layers_[static_cast<std::uint32_t>(id)] = layer;
+}
+
+void Bodies::applyLayers() {
+  filter_changed_.clear();
+  std::vector<BodyGroups> groups;
+  for (const auto& [id, layer] : new_layers_) {
+    BodyGroups body = filter_.groupsOf(id);
+    if (std::exchange(body.layer, layer) == layer) continue;
+    filter_changed_.push_back(id);
+    groups.push_back(body);
+  }
+  new_layers_.clear();
+  if (!groups.empty()) filter_ = filter_.with(filter_changed_, groups, size());
+}
+
 Frame Bodies::record(std::uint32_t frame) {
+  if (filter_changes_) applyLayers();
   changed_.clear();
   for (const std::uint32_t id : inEngine()) {
     Aabb box = kEmptyBox;
@@ -57,7 +78,7 @@ Frame Bodies::record(std::uint32_t frame) {
   }
   std::erase_if(ids_, [this](std::uint32_t id) { return bodies_[id] == nullptr; });
   if (frame == 0) changed_.clear();
-  return {frame, boxes_, changed_};
+  return {frame, boxes_, changed_, filter_changes_ ? &filter_ : nullptr, filter_changed_};
 }
 
 }  // namespace broadmark::scenes

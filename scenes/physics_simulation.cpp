@@ -210,7 +210,7 @@ AuthoredScene PhysicsSimulation::authoredScene() {
   copyCollisions(scene, info_.filter);
   const LayerMatrix layers = pushing(info_);
   for (std::uint32_t id = 0; id < bodies_->size(); ++id) {
-    const std::uint8_t layer = info_.filter.groupsOf(id).layer;
+    const std::uint8_t layer = bodies_->filter().groupsOf(id).layer;
     bool pushes = layers.rows()[layer] != 0;
     if (const PhysicsBody* body = (*bodies_)[id]) {
       scene.bodies.push_back({.shape = body->shape(),

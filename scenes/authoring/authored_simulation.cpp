@@ -250,7 +250,7 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
     for (std::uint32_t id = 0; id < requested.boxes.size(); ++id) {
       if (isEmpty(requested.boxes[id])) continue;
       scene.bodies.push_back(bodyFilling(requested.boxes[id], info.object_type));
-      scene.bodies.back().layer = info.filter.groupsOf(id).layer;
+      scene.bodies.back().layer = requested.filterIn(info).groupsOf(id).layer;
     }
   }
   requireValid(scene);

@@ -1,11 +1,13 @@
 // Fountain: a nozzle in the floor throws bodies up; they fall, come to rest and vanish. The jet
 // swells and subsides, and so the number of bodies rises and falls. A new body reuses the id of a
-// body that has vanished, often in the same frame.
+// body that has vanished, often in the same frame. A body that has fallen back to the
+// floor changes to a layer of its own, which does not collide with bodies in the air.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "broadmark/scenes/scene.h"
 #include "entries.h"
@@ -14,6 +16,8 @@
 
 namespace broadmark::scenes::fountain {
 namespace {
+
+enum Layer : std::uint8_t { air, pool };
 
 class Fountain final : public Scene {
  public:
@@ -31,9 +35,17 @@ class Fountain final : public Scene {
            1});
     visit({"filled", "share of the bodies present at the start, anywhere in the world", &filled_, 0,
            1});
+    visit({"pool", "whether bodies that have fallen to the floor collide only with each other",
+           &pool_});
   }
 
-  void describe(const Settings&, SceneInfo& info) const override { info.all_present = false; }
+  void describe(const Settings&, SceneInfo& info) const override {
+    info.all_present = false;
+    if (!pool_) return;
+    info.filter_changes = true;
+    info.filter = {std::vector<BodyGroups>(info.objects),
+                   LayerMatrix().set(air, air).set(pool, pool), true};
+  }
 
   void prepare(const Settings& settings, Random&) override {
     lifetimes_.reset(0, static_cast<std::size_t>(settings.objects));
@@ -50,6 +62,7 @@ class Fountain final : public Scene {
 
   void act(Stage& stage, std::uint32_t frame) override {
     lifetimes_.removeOld(stage.bodies, frame);
+    if (pool_) changeLayers(stage);
     const double phase = 2 * std::numbers::pi * frame / static_cast<double>(period_);
     due_ += (1 - std::cos(phase)) / 2 * static_cast<double>(stage.bodies.size()) /
             static_cast<double>(lifetime_);
@@ -57,10 +70,21 @@ class Fountain final : public Scene {
       const auto id = lifetimes_.allocate(frame + framesOf(stage.random.between(0.5, 1.5)));
       if (!id) continue;
       stage.bodies.add(*id, thrown(*id, stage));
+      if (pool_) stage.bodies.setLayer(*id, Layer::air);
     }
   }
 
  private:
+  static void changeLayers(Stage& stage) {
+    const double floor = -0.5 * stage.settings.side();
+    const double surface = floor + 0.25 * stage.settings.scale;
+    for (const std::uint32_t id : stage.bodies.inEngine()) {
+      const PhysicsBody* const body = stage.bodies[id];
+      if (body == nullptr || body->linearVelocity()[1] > 0) continue;
+      if (stage.bodies.boxes()[id].min[1] <= surface) stage.bodies.setLayer(id, Layer::pool);
+    }
+  }
+
   /// The duration in frames; at least one.
   [[nodiscard]] std::uint32_t framesOf(double lifetimes) const {
     return 1 + static_cast<std::uint32_t>(lifetimes * static_cast<double>(lifetime_));
@@ -84,6 +108,7 @@ class Fountain final : public Scene {
   std::int64_t period_ = 400;
   double spread_ = 0.2;
   double filled_ = 0.25;
+  bool pool_ = true;
   Lifetimes lifetimes_;
   double due_ = 0;  ///< bodies to throw, including a fraction
 };

@@ -1,11 +1,13 @@
 // Shooter: a level of boxes of all sizes that never move, characters that walk about in it, bursts
 // of short-lived projectiles, and trigger volumes. Four layers: characters collide with all;
 // projectiles with the level and characters; the level not with itself, and triggers only with
-// characters. Triggers push nothing: they are scenery.
+// characters. Triggers push nothing: they are scenery. At first projectiles are in a fifth layer,
+// which collides with the level alone: until they have left the character that shot them.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <numbers>
 #include <vector>
 
@@ -17,15 +19,16 @@
 namespace broadmark::scenes::shooter {
 namespace {
 
-enum Layer : std::uint8_t { level, character, projectile, trigger };
+enum Layer : std::uint8_t { level, character, projectile, trigger, unarmed };
 
-LayerMatrix collisions() {
+LayerMatrix collisions(bool has_unarmed) {
   return LayerMatrix()
       .set(level, character)
       .set(level, projectile)
       .set(character, character)
       .set(character, projectile)
-      .set(character, trigger);
+      .set(character, trigger)
+      .set(level, unarmed, has_unarmed);
 }
 
 /// The ends of the id ranges: level, then characters, triggers, projectiles.
@@ -60,6 +63,10 @@ class Shooter final : public Scene {
     visit({"burst", "projectiles that a character shoots at once", &burst_, 0, 1'000'000});
     visit({"pause", "frames between two bursts of a character", &pause_, 1, 1'000'000});
     visit({"lifetime", "frames that a projectile lives", &lifetime_, 1, 1'000'000});
+    visit({"arming",
+           "frames until a projectile collides with characters, such as the one that shot it; 0: "
+           "from the start",
+           &arming_, 0, 1'000'000});
     visit({"muzzle_speed", "speed of a projectile, in sides of the world per second",
            &muzzle_speed_, 0, 10});
   }
@@ -68,7 +75,8 @@ class Shooter final : public Scene {
     const Ends ends = endsOf(settings);
     std::vector<BodyGroups> bodies(info.objects);
     for (std::size_t id = 0; id < bodies.size(); ++id) bodies[id].layer = ends.layerOf(id);
-    info.filter = {bodies, collisions()};
+    info.filter_changes = arming_ > 0;
+    info.filter = {bodies, collisions(info.filter_changes), info.filter_changes};
     info.all_present = false;
   }
 
@@ -76,6 +84,7 @@ class Shooter final : public Scene {
     ends_ = endsOf(settings);
     lifetimes_.reset(ends_.triggers, static_cast<std::size_t>(settings.objects));
     headings_.assign(ends_.characters - ends_.level, {});
+    unarmed_.clear();
   }
 
   void populate(Stage& stage) override {
@@ -95,6 +104,7 @@ class Shooter final : public Scene {
 
   void act(Stage& stage, std::uint32_t frame) override {
     lifetimes_.removeOld(stage.bodies, frame);
+    armOld(stage.bodies, frame);
     for (std::size_t i = 0; i < headings_.size(); ++i) {
       // Staggered over the frames.
       const std::uint64_t turn = (frame + i) % static_cast<std::uint64_t>(pause_);
@@ -156,7 +166,26 @@ class Shooter final : public Scene {
       body.linear_velocity[axis] = speed * direction;
     }
     stage.bodies.add(*id, body);
+    if (arming_ == 0) return;
+    stage.bodies.setLayer(*id, Layer::unarmed);
+    unarmed_.push_back({frame + static_cast<std::uint32_t>(arming_), *id});
   }
+
+  /// A later projectile may have the id by now: then it is unarmed, and follows in the queue.
+  void armOld(Bodies& bodies, std::uint32_t frame) {
+    for (; !unarmed_.empty() && unarmed_.front().until <= frame; unarmed_.pop_front()) {
+      const std::size_t id = unarmed_.front().id;
+      const bool is_reused =
+          std::ranges::any_of(unarmed_.begin() + 1, unarmed_.end(),
+                              [&](const Unarmed& other) { return other.id == id; });
+      if (!is_reused) bodies.setLayer(id, Layer::projectile);
+    }
+  }
+
+  struct Unarmed {
+    std::uint32_t until = 0;  ///< frame
+    std::size_t id = 0;
+  };
 
   double level_ = 0.5;
   double characters_ = 0.02;
@@ -165,9 +194,11 @@ class Shooter final : public Scene {
   std::int64_t burst_ = 8;
   std::int64_t pause_ = 20;
   std::int64_t lifetime_ = 25;
+  std::int64_t arming_ = 3;
   double muzzle_speed_ = 1.5;
   Ends ends_;
-  Lifetimes lifetimes_;         ///< of projectiles
+  Lifetimes lifetimes_;  ///< of projectiles
+  std::deque<Unarmed> unarmed_;
   std::vector<Vec3> headings_;  ///< of characters
 };
 
@@ -175,7 +206,7 @@ class Shooter final : public Scene {
 
 SceneEntry entry() {
   return {{"shooter", "Shooter",
-           "a level that never moves, characters, bursts of projectiles, triggers: four layers"},
+           "a level that never moves, characters, bursts of projectiles, triggers: five layers"},
           makeEntry<Scene, Shooter>};
 }
 

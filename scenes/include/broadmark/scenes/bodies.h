@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -25,14 +26,22 @@ class Bodies {
   /// frame. Valid until a body is added.
   [[nodiscard]] std::span<const std::uint32_t> inEngine();
 
-  /// Adds the absent body `id` to the engine, with the layer and world of the scene.
+  /// Adds the absent body `id` to the engine, with the layer and world of the scene's initial
+  /// filter.
   PhysicsBody& add(std::size_t id, BodyDescription);
   /// Removes body `id`, which must be in the engine.
   void remove(std::size_t id);
   /// Makes the absent body `id` part of the scenery.
   void place(std::size_t id, const Shape&, const Pose&);
 
-  /// Records the boxes of all bodies. O(bodies in the engine).
+  /// Gives body `id` another layer from the next recorded frame on; in the engine it keeps its own.
+  /// Only if SceneInfo::filter_changes.
+  void setLayer(std::size_t id, std::uint8_t layer);
+  /// The filter of the last recorded frame.
+  [[nodiscard]] const CollisionFilter& filter() const { return filter_; }
+
+  /// Records the boxes of all bodies. O(bodies in the engine), or O(bodies) if filters change in
+  /// the frame.
   Frame record(std::uint32_t frame);
   // For the last recorded frame, by id.
   [[nodiscard]] std::span<const Aabb> boxes() const { return boxes_; }
@@ -41,8 +50,14 @@ class Bodies {
   [[nodiscard]] double massOf(std::size_t id) const { return masses_[id]; }
 
  private:
+  void applyLayers();
+
   PhysicsEngine* engine_;
+  CollisionFilter initial_filter_;
   CollisionFilter filter_;
+  bool filter_changes_;
+  std::map<std::uint32_t, std::uint8_t> new_layers_;  ///< from the next frame on
+  std::vector<std::uint32_t> filter_changed_;
   std::vector<PhysicsBody*> bodies_;
   std::vector<double> masses_;
   std::vector<Aabb> boxes_;
