@@ -1,6 +1,6 @@
 """Recordings of changing worlds (.broadmark) as arrays, read and written; docs/recordings.md
-describes the format. A frame holds the boxes that changed since the previous frame, a key frame all
-boxes.
+describes the format. A frame holds the boxes, and the layers and tags, that changed since the
+previous frame, a key frame all of them.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ Ids = npt.NDArray[np.uint32]
 
 MAGIC = b"BRDMARK2"
 SCHEMA = "broadmark-recording/2"
+#: With layers and tags that change.
+FILTER_CHANGES_SCHEMA = "broadmark-recording/2.1"
 ALIGNMENT = 32
 LAYERS = 32
 NO_TAG = 0xFFFFFFFF
@@ -37,6 +39,8 @@ GROUPS: dict[str, tuple[str, tuple[int, ...]]] = {
     "tags": ("<u4", (3,)),
 }
 BOX_BYTES = 24
+#: A layer and three tags.
+FILTER_BYTES = 16
 MAX_KEY_INTERVAL = 256
 
 #: The box of an absent body.
@@ -66,11 +70,13 @@ class ChangingRecording:
     bodies: int  #: n
     last_frame: int  #: F
     all_present: bool  #: no body is ever absent
-    groups: Groups
+    groups: Groups  #: of the initial pose, and of all frames unless filter_changes
+    filter_changes: bool  #: layers and tags change from frame to frame
     source: str | None  #: the file that it was converted from
     scene_parameters: dict[str, Any] | None  #: as in the sidecar of a baked recording
     _content: npt.NDArray[np.uint8] = dataclasses.field(repr=False)
     _index: Any = dataclasses.field(repr=False)
+    _filter_counts: Any = dataclasses.field(repr=False)
 
     def changed(self, frame: int) -> Ids:
         """The bodies that moved, appeared or disappeared since the previous frame, ascending."""
@@ -100,6 +106,23 @@ class ChangingRecording:
             all_boxes[k] = boxes
         return all_boxes
 
+    def filter_changed(self, frame: int) -> Ids:
+        """The bodies with other layers or tags than in the previous frame, ascending."""
+        return self._filter_block(frame)[0]
+
+    def groups_at(self, frame: int) -> Groups:
+        """The collision filter of a frame."""
+        key = int(self._entry(frame)["key"])
+        if not self.filter_changes:
+            return self.groups
+        values = _filter_values(self.groups, self.bodies)
+        for k in range(max(key, 1), frame + 1):
+            ids, rows = self._filter_block(k)
+            values[slice(None) if len(rows) == self.bodies else ids] = rows
+        return dataclasses.replace(
+            self.groups, layers=values[:, 0].astype(np.uint8), tags=values[:, 1:]
+        )
+
     def _entry(self, frame: int) -> Any:
         if not 0 <= frame <= self.last_frame:
             raise InputError(f"{self.name}: no frame {frame}: the last frame is {self.last_frame}")
@@ -108,8 +131,20 @@ class ChangingRecording:
     def _block(self, frame: int) -> tuple[Ids, Floats]:
         """A frame's changed bodies and stored boxes."""
         entry = self._entry(frame)
-        count, is_key = int(entry["changed"]), int(entry["key"]) == frame
-        start = int(entry["offset"])
+        return self._rows(frame, int(entry["offset"]), int(entry["changed"]), BOX_BYTES)[:2]
+
+    def _filter_block(self, frame: int) -> tuple[Ids, Any]:
+        """A frame's bodies with changed filters, and the stored layers and tags (…, 4)."""
+        entry = self._entry(frame)
+        if frame == 0 or not self.filter_changes:
+            return np.empty(0, np.uint32), np.empty((0, 4), np.uint32)
+        *_, start = self._rows(frame, int(entry["offset"]), int(entry["changed"]), BOX_BYTES)
+        ids, rows, _ = self._rows(frame, start, int(self._filter_counts[frame]), FILTER_BYTES)
+        return ids, rows.view("<u4").reshape(len(rows), 4)
+
+    def _rows(self, frame: int, start: int, count: int, row_bytes: int) -> tuple[Ids, Any, int]:
+        """Ids, their rows, and the end of both."""
+        is_key = int(self._entry(frame)["key"]) == frame
         if count == self.bodies:
             ids = np.arange(count, dtype=np.uint32)
         else:
@@ -118,8 +153,8 @@ class ChangingRecording:
                 raise InputError(f"{self.name}: frame {frame}: changes a body that does not exist")
             start += _aligned(4 * count)
         rows = self.bodies if is_key else count
-        packed = self._content[start : start + BOX_BYTES * rows].view("<f4")
-        return ids, packed.reshape(rows, 2, 3)
+        packed = self._content[start : start + row_bytes * rows].view("<f4")
+        return ids, packed.reshape(rows, 2, row_bytes // 8), start + _aligned(row_bytes * rows)
 
     def _apply(self, frame: int, boxes: Floats) -> Ids:
         ids, rows = self._block(frame)
@@ -159,7 +194,8 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
     require(offset <= size and offset % ALIGNMENT == 0, "the header states a wrong size of itself")
     try:
         header = json.loads(content[START.itemsize : offset].tobytes())
-        require(header["schema"] == SCHEMA, f"is not a {SCHEMA}")
+        filter_changes = header["schema"] == FILTER_CHANGES_SCHEMA
+        require(filter_changes or header["schema"] == SCHEMA, f"is not a {SCHEMA}")
         bodies, last = int(header["objects"]), int(header["frames"])
         world = np.array(header["world"], np.float32).reshape(2, 3)
         group_names = [str(group) for group in header["groups"]]
@@ -190,7 +226,10 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
         f"the size does not match {bodies} bodies and {last} frames",
     )
     index = content[index_at:index_end].view(INDEX)
-    _require_index(path, index, offset, index_at, bodies)
+    frames_end = index_at - (_aligned(4 * (1 + last)) if filter_changes else 0)
+    require(frames_end >= offset, "is too short for its frames")
+    filter_counts = content[frames_end:index_at].view("<u4")[: 1 + last]
+    _require_index(path, index, filter_counts, offset, frames_end, bodies)
     groups = Groups(**group_data, colliding_layers=colliding)
     return ChangingRecording(
         **metadata,
@@ -198,19 +237,30 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
         bodies=bodies,
         last_frame=last,
         groups=groups,
+        filter_changes=filter_changes,
         _content=content,
         _index=index,
+        _filter_counts=filter_counts,
     )
 
 
-def _require_index(path: pathlib.Path, index: Any, begin: int, end: int, bodies: int) -> None:
+def _require_index(
+    path: pathlib.Path, index: Any, filter_counts: Any, begin: int, end: int, bodies: int
+) -> None:
     """Raises InputError unless the frames fill the range from `begin` to `end` without gaps."""
     number = np.arange(len(index))
     changed = index["changed"].astype(np.int64)
     is_key = index["key"] == number
-    ids = np.where(changed < bodies, -(-4 * changed // ALIGNMENT), 0)
-    boxes = -(-BOX_BYTES * np.where(is_key, bodies, changed) // ALIGNMENT)
-    ends = begin + ALIGNMENT * (ids + boxes).cumsum()
+
+    def units(count: Any, row_bytes: int) -> Any:
+        ids = np.where(count < bodies, -(-4 * count // ALIGNMENT), 0)
+        return ids + -(-row_bytes * np.where(is_key, bodies, count) // ALIGNMENT)
+
+    sizes = units(changed, BOX_BYTES)
+    if len(filter_counts) > 0:
+        # Frame 0 has the header's.
+        sizes += np.where(number > 0, units(filter_counts.astype(np.int64), FILTER_BYTES), 0)
+    ends = begin + ALIGNMENT * sizes.cumsum()
     starts = np.concatenate(([begin], ends[:-1]))
     before = np.concatenate(([0], index["key"][:-1]))
     if (
@@ -218,13 +268,15 @@ def _require_index(path: pathlib.Path, index: Any, begin: int, end: int, bodies:
         or ends[-1] != end
         or (index["offset"] != starts).any()
         or (changed > bodies).any()
+        or (filter_counts > bodies).any()
+        or filter_counts[:1].any()
         or (~is_key & (index["key"] != before)).any()
     ):
         raise InputError(f"{path}: the index does not match the frames")
 
 
 class Writer:
-    """Writes a recording to an open file, frame by frame."""
+    """Writes a recording to an open file, frame by frame. `groups` are the first frame's."""
 
     def __init__(self, file: Any, header: dict[str, Any], groups: Groups, bodies: int) -> None:
         self._hash = _hasher()
@@ -233,6 +285,8 @@ class Writer:
         self._groups = groups
         self._bodies = bodies
         self._previous: Floats | None = None
+        self._filter_changes = header["schema"] == FILTER_CHANGES_SCHEMA
+        self._filter_counts: list[int] = []
         self._index: list[tuple[int, int, int, tuple[int, int]]] = []
         self._since_key = 0
         # Reserve room: the world box and the number of frames are known only at the end.
@@ -245,9 +299,10 @@ class Writer:
             if values is not None:
                 self._group_bytes += _padded(_group_data(group, values, type_, (bodies, *shape)))
         file.write(self._group_bytes)
+        self._filter = _filter_values(groups, bodies)
 
-    def write(self, boxes: Floats) -> None:
-        """Appends a frame (n, 2, 3)."""
+    def write(self, boxes: Floats, groups: Groups | None = None) -> None:
+        """Appends a frame (n, 2, 3), with its own groups if filters change."""
         number = len(self._index)
         packed = np.ascontiguousarray(boxes, "<f4")
         if self._previous is None:
@@ -255,32 +310,59 @@ class Writer:
         else:
             differs = packed.view("<u4") != self._previous.view("<u4")
             ids = np.flatnonzero(differs.any((1, 2))).astype("<u4")
-        self._since_key += (4 + BOX_BYTES) * len(ids)
+        filter_ids = self._update_filter(groups) if groups else np.empty(0, np.uint32)
+        self._since_key += (4 + BOX_BYTES) * len(ids) + (4 + FILTER_BYTES) * len(filter_ids)
+        row_bytes = BOX_BYTES + (FILTER_BYTES if self._filter_changes else 0)
         key = self._index[-1][2] if self._index else 0
         if (
             number == 0
-            or self._since_key >= BOX_BYTES * self._bodies
+            or self._since_key >= row_bytes * self._bodies
             or number - key >= MAX_KEY_INTERVAL
         ):
             key, self._since_key = number, 0
-        block = b"" if len(ids) == self._bodies else _padded(ids.tobytes())
-        block += _padded((packed if key == number else packed[ids]).tobytes())
+        block = self._rows(ids, packed, key == number)
+        if self._filter_changes and number > 0:
+            block += self._rows(filter_ids, self._filter, key == number)
+        self._filter_counts.append(len(filter_ids))
         self._header["all_present"] &= bool(present(packed).all())
         self._index.append((self._file.tell(), len(ids), key, _digest(block)))
         self._file.write(block)
         self._previous = packed.copy()
+
+    def _rows(self, ids: Any, rows: Any, is_key: bool) -> bytes:
+        """The ids, unless they are all, and their rows, or all of a key frame."""
+        block = b"" if len(ids) == self._bodies else _padded(ids.tobytes())
+        return block + _padded((rows if is_key else rows[ids]).tobytes())
+
+    def _update_filter(self, groups: Groups) -> Any:
+        """Applies the groups of the next frame. Returns the bodies with changes."""
+        number = len(self._index)
+        for group in ("layers", "tags"):
+            values = getattr(groups, group)
+            if values is not None:
+                type_, shape = GROUPS[group]
+                _group_data(f"frame {number}: {group}", values, type_, (self._bodies, *shape))
+        same_worlds = np.array_equal(
+            _worlds(groups, self._bodies), _worlds(self._groups, self._bodies)
+        )
+        if not same_worlds or groups.colliding_layers != self._groups.colliding_layers:
+            raise InputError(f"frame {number}: groups: only layers and tags may change")
+        before, self._filter = self._filter, _filter_values(groups, self._bodies)
+        return np.flatnonzero((before != self._filter).any(1)).astype("<u4")
 
     def finish(self, world: Floats) -> None:
         """Writes the header, the index and the trailer."""
         self._header["world"] = world.astype(float).tolist()
         index = np.array(self._index, INDEX)
         trailer = np.zeros(1, TRAILER)
-        trailer["index_offset"], trailer["magic"] = self._file.tell(), MAGIC
+        counts = _padded(np.array(self._filter_counts, "<u4").tobytes())
+        counts = counts if self._filter_changes else b""
+        trailer["index_offset"], trailer["magic"] = self._file.tell() + len(counts), MAGIC
         start = np.zeros(1, START)
         start["magic"], start["header_bytes"] = MAGIC, self._header_bytes
         head = start.tobytes() + self._header_text(self._header_bytes) + self._group_bytes
-        trailer["hash"] = _digest(head + index.tobytes())
-        self._file.write(index.tobytes() + trailer.tobytes())
+        trailer["hash"] = _digest(head + counts + index.tobytes())
+        self._file.write(counts + index.tobytes() + trailer.tobytes())
         self._file.seek(0)
         self._file.write(head)
 
@@ -290,7 +372,9 @@ class Writer:
         return text.ljust(size - 1) + b"\n"
 
 
-def new_header(name: str, object_type: str, bodies: int, groups: Groups) -> dict[str, Any]:
+def new_header(
+    name: str, object_type: str, bodies: int, groups: Groups, filter_changes: bool = False
+) -> dict[str, Any]:
     """The header of a recording without frames."""
     for pair in groups.colliding_layers:
         if len(pair) != 2 or not all(0 <= layer < LAYERS for layer in pair):
@@ -298,7 +382,7 @@ def new_header(name: str, object_type: str, bodies: int, groups: Groups) -> dict
                 f"colliding layers {pair}: expected pairs of layers from 0 to {LAYERS - 1}"
             )
     return {
-        "schema": SCHEMA,
+        "schema": FILTER_CHANGES_SCHEMA if filter_changes else SCHEMA,
         "name": name,
         "object_type": object_type,
         "objects": bodies,
@@ -312,9 +396,22 @@ def new_header(name: str, object_type: str, bodies: int, groups: Groups) -> dict
     }
 
 
+def _filter_values(groups: Groups, bodies: int) -> Any:
+    """The layer and the tags of each body, as stored in a frame (n, 4)."""
+    values = np.full((bodies, 4), NO_TAG, "<u4")
+    values[:, 0] = 0 if groups.layers is None else groups.layers
+    if groups.tags is not None:
+        values[:, 1:] = groups.tags
+    return values
+
+
+def _worlds(groups: Groups, bodies: int) -> Any:
+    return np.zeros(bodies) if groups.worlds is None else np.asarray(groups.worlds)
+
+
 def _group_data(group: str, values: Any, type_: str, shape: tuple[int, ...]) -> bytes:
     array = np.asarray(values)
-    maximum = LAYERS - 1 if group == "layers" else NO_TAG
+    maximum = LAYERS - 1 if group.endswith("layers") else NO_TAG
     if array.shape != shape or array.dtype.kind not in "iu":
         raise InputError(f"{group}: expected an array of integers of shape {shape}")
     if array.size and (array.min() < 0 or array.max() > maximum):

@@ -156,14 +156,14 @@ def write_recording(
     name: str = "Custom",
     object_type: str = "Boxes",
     world: Any = None,
-    groups: recording2.Groups | None = None,
+    groups: recording2.Groups | Iterable[recording2.Groups] | None = None,
 ) -> None:
     """Writes boxes as a recording (.aabbs, .broadmark).
 
     `boxes` is an array (F + 1, n, 2, 3), or an iterable of arrays (n, 2, 3) or (n, 6), consumed as
     the file is written: the initial pose, which is not timed, then the frames. `world` (2, 3) is the
-    bounding box of all boxes by default. EMPTY_BOX for absent bodies and `groups` require
-    .broadmark. The file is written atomically. Raises InputError for boxes that a recording cannot
+    bounding box of all boxes by default. `groups`: the collision filter, or, if layers or tags
+    change, that of each set. EMPTY_BOX for absent bodies and `groups` require .broadmark. The file is written atomically. Raises InputError for boxes that a recording cannot
     hold.
     """
     path = pathlib.Path(path)
@@ -182,15 +182,21 @@ def write_recording(
     with atomic_write(path) as file:
         writer: recording2.Writer | _AabbsWriter
         if is_changing:
-            bodies, filter_groups = len(first), groups or recording2.Groups()
-            header = recording2.new_header(name, object_type, bodies, filter_groups)
-            writer = recording2.Writer(file, header, filter_groups, bodies)
+            all_groups = _groups_of_frames(path, groups)
+            bodies, initial = len(first), next(all_groups)
+            header = recording2.new_header(
+                name, object_type, bodies, initial, not isinstance(groups, recording2.Groups | None)
+            )
+            writer = recording2.Writer(file, header, initial, bodies)
         else:
             writer = _AabbsWriter(file, name, object_type, len(first))
         bounds: Floats | None = None
         frame_count = 0
         for array in itertools.chain([first], frames):
-            writer.write(array)
+            if isinstance(writer, recording2.Writer):
+                writer.write(array, next(all_groups) if frame_count > 0 else None)
+            else:
+                writer.write(array)
             present_boxes = array[recording2.present(array)]
             if len(present_boxes):
                 frame_bounds = np.stack([present_boxes[:, 0].min(0), present_boxes[:, 1].max(0)])
@@ -201,6 +207,17 @@ def write_recording(
         if world is not None:
             bounds = as_boxes(np.asarray(world)[np.newaxis])[0]
         writer.finish(np.zeros((2, 3), np.float32) if bounds is None else bounds)
+
+
+def _groups_of_frames(
+    path: pathlib.Path, groups: recording2.Groups | Iterable[recording2.Groups] | None
+) -> Iterator[recording2.Groups]:
+    """The groups of each frame, without end if they do not change."""
+    if groups is None or isinstance(groups, recording2.Groups):
+        yield from itertools.repeat(groups or recording2.Groups())
+    else:
+        yield from groups
+        raise InputError(f"{path}: there are fewer groups than sets of boxes")
 
 
 def _too_few(path: pathlib.Path, frame_count: int) -> str:

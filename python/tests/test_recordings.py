@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import pathlib
 from typing import Any
 
@@ -153,6 +154,62 @@ def test_program_and_python_read_each_others_files(tmp_path: pathlib.Path) -> No
     assert (read.name, read.source) == ("Changing", "a.broadmark")
     with pytest.raises(broadmark.InputError, match="layers"):
         call("convert", str(path), str(tmp_path / "c.aabbs"))
+
+
+def changing_groups(frames: int, bodies: int) -> list[broadmark.Groups]:
+    """Groups of frames: in each, some bodies change layer or tags."""
+    generator = np.random.default_rng(3)
+    layers = np.zeros(bodies, np.uint8)
+    tags = np.full((bodies, 3), 0xFFFFFFFF, np.uint32)
+    groups = []
+    for frame in range(frames):
+        some = generator.random(bodies) < (0.2 if frame > 0 else 0)
+        layers, tags = layers.copy(), tags.copy()
+        layers[some] = generator.integers(0, 4, some.sum())
+        tags[some, 1] = generator.integers(0, 9, some.sum())
+        groups.append(broadmark.Groups(layers, None, tags, ((0, 0), (1, 3))))
+    return groups
+
+
+def test_filters_that_change_are_read_and_written(tmp_path: pathlib.Path) -> None:
+    frames, bodies = 300, 40
+    boxes = np.repeat(changing_boxes(1, bodies), frames, axis=0)
+    groups = changing_groups(frames, bodies)
+    path = tmp_path / "a.broadmark"
+    broadmark.write_recording(path, boxes, groups=groups)
+    assert "ok" in call("verify", str(path))
+    call("convert", str(path), str(tmp_path / "b.broadmark"), "--quiet")
+    for name in ("a", "b"):
+        recording = broadmark.read_recording(tmp_path / f"{name}.broadmark")
+        assert isinstance(recording, broadmark.ChangingRecording) and recording.filter_changes
+        np.testing.assert_array_equal(recording.boxes, boxes)
+        for frame in (0, 299, 1, 150, 257):
+            now = recording.groups_at(frame)
+            np.testing.assert_array_equal(now.layers, groups[frame].layers)
+            np.testing.assert_array_equal(now.tags, groups[frame].tags)
+            assert now.colliding_layers == ((0, 0), (1, 3))
+            before = groups[max(frame - 1, 0)]
+            differs = (now.layers != before.layers) | (now.tags != before.tags).any(1)
+            np.testing.assert_array_equal(recording.filter_changed(frame), differs.nonzero()[0])
+    results = tmp_path / "r.json"
+    call("--headless", str(path), "--algorithm", "bf,kd,tide", "--json", str(results), "--quiet")
+    assert {case["status"] for case in json.loads(results.read_text())["cases"]} == {"ok"}
+
+
+def test_only_layers_and_tags_may_change(tmp_path: pathlib.Path) -> None:
+    boxes = random_boxes(2, 3)
+    first = broadmark.Groups(layers=np.array([1, 0, 0]))
+    for second, message in (
+        (broadmark.Groups(worlds=np.array([1, 0, 0])), "only layers and tags"),
+        (broadmark.Groups(colliding_layers=((0, 1),)), "only layers and tags"),
+        (broadmark.Groups(layers=np.array([32, 0, 0])), "frame 1: layers: expected numbers"),
+        (broadmark.Groups(tags=np.array([1, 0, 0])), "frame 1: tags: expected"),
+        (None, "fewer groups"),
+    ):
+        with pytest.raises(broadmark.InputError, match=message):
+            groups = [first, second] if second else [first]
+            broadmark.write_recording(tmp_path / "a.broadmark", boxes, groups=groups)
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_reader_in_the_documents(
