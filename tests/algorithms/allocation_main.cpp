@@ -76,17 +76,21 @@ std::vector<Algorithm> allocationFreeAlgorithms() {
 /// Allocations while the same frames are repeated. The boxes move, so that incremental algorithms
 /// have work to do.
 long allocationsPerRound(const Algorithm& algorithm, const Configuration& config,
-                         std::size_t bodies, const CollisionFilter& filter = {}) {
+                         std::size_t bodies, const CollisionFilter& filter = {},
+                         bool filter_changes = false) {
   constexpr int kRoundsBefore = 3;
   const auto frames = framesOf({"drifting", inputs::drifting}, bodies, 6);
   SceneInfo scene = sceneOf(frames);
   scene.filter = filter;
+  scene.filter_changes = filter_changes;
   TestRun test_run(algorithm, config);
   test_run.start(scene, frames[0]);
   long before = 0;
   for (int round = 0; round <= kRoundsBefore; ++round) {
     before = allocations;
-    for (const std::vector<Aabb>& boxes : frames) test_run.step(boxes);  // accumulates events, too
+    for (const std::vector<Aabb>& boxes : frames) {
+      test_run.step(boxes, filter_changes ? &scene.filter : nullptr);  // accumulates events, too
+    }
   }
   return allocations - before;
 }
@@ -122,6 +126,19 @@ TEST_P(SteadyState, AllocatesNothingInSeveralWorlds) {
                [](inputs::Random&, std::uint32_t body) { return BodyGroups{.world = body % 5}; });
   for (const Configuration& config : allConfigurations(GetParam())) {
     EXPECT_EQ(allocationsPerRound(GetParam(), config, kBodies, filter), 0)
+        << describe(GetParam(), config);
+  }
+}
+
+// Frames in which no filter changes, where filters may.
+TEST_P(SteadyState, AllocatesNothingWhileFiltersRest) {
+  constexpr std::size_t kBodies = 500;
+  const CollisionFilter filter =
+      filterOf(kBodies, LayerMatrix().set(0, 1).set(1, 1), [](inputs::Random&, std::uint32_t body) {
+        return BodyGroups{.layer = std::uint8_t{body % 3 == 0}};
+      });
+  for (const Configuration& config : allConfigurations(GetParam())) {
+    EXPECT_EQ(allocationsPerRound(GetParam(), config, kBodies, filter, true), 0)
         << describe(GetParam(), config);
   }
 }

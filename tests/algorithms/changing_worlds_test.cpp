@@ -1,5 +1,5 @@
 // Every listed algorithm must find the right pairs in every frame, in every configuration, in
-// worlds with bodies that appear and vanish, and with collision filters.
+// worlds with bodies that appear and vanish, and with collision filters, which may change.
 
 #include <gtest/gtest.h>
 
@@ -31,17 +31,21 @@ class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> 
     SceneInfo scene = sceneOf(world.frames);
     if (world.bounds) scene.world = *world.bounds;
     scene.all_present = false;
-    scene.filter = world.filter;
+    scene.filter = world.filterOf(0);
+    scene.filter_changes = !world.filters.empty();
     std::vector<std::vector<Pair>> right;
-    for (const auto& boxes : world.frames) right.push_back(bruteForcePairs(boxes, world.filter));
+    for (const auto& boxes : world.frames) {
+      right.push_back(bruteForcePairs(boxes, world.filterOf(right.size())));
+    }
     for (auto& [name, test_run] : test_runs_) {
       SCOPED_TRACE(name + " on " + world.name + ", n = " + std::to_string(scene.objects));
       try {
         test_run.start(scene, world.frames[0]);
         for (std::uint32_t i = 1; i < world.frames.size(); ++i) {
-          const PairRuns answer = test_run.step(world.frames[i]);
-          ASSERT_TRUE(
-              isRight(answer, right[i], {i, world.frames[i]}, test_run.margin(), world.filter))
+          const CollisionFilter& filter = world.filterOf(i);
+          const PairRuns answer =
+              test_run.step(world.frames[i], scene.filter_changes ? &filter : nullptr);
+          ASSERT_TRUE(isRight(answer, right[i], {i, world.frames[i]}, test_run.margin(), filter))
               << "in frame " << i;
           ASSERT_EQ(test_run.broadPhase().validate(), "") << "in frame " << i;
         }
@@ -74,6 +78,43 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
              filter.filter, framesWith(input, n, kFrames, present)});
       if (HasFatalFailure() || IsSkipped()) return;
     }
+  }
+}
+
+// Every filter, with bodies that change layers and tags, in all, some, or few frames.
+TEST_P(EveryAlgorithmInChangingWorlds, FollowsFiltersThatChange) {
+  constexpr std::uint32_t kFrames = 9;
+  constexpr inputs::Input kInputs[] = {
+      {"still", inputs::still}, {"drifting", inputs::drifting}, {"clustered", inputs::clustered}};
+  constexpr std::size_t kCounts[] = {120, 33, 2, 60, 17};
+  std::size_t turn = 0;
+  for (std::size_t kind = 0; kind < filters(1).size(); ++kind) {
+    for (const auto& [change_name, changes] : inputs::kFilterChanges) {
+      const std::size_t n = kCounts[turn % std::size(kCounts)];
+      const inputs::Input& input = kInputs[turn / 2 % std::size(kInputs)];
+      const auto& [presence_name, present] = inputs::kPresences[turn++ % inputs::kPresences.size()];
+      const NamedFilter filter = filters(n)[kind];
+      check({.name = fmt::format("{}, {}, {}, filters: {}", input.name, filter.name, presence_name,
+                                 change_name),
+             .filter = {},
+             .frames = framesWith(input, n, kFrames, present),
+             .filters = inputs::changingFilters(filter.filter, n, kFrames - 1, changes, turn)});
+      if (HasFatalFailure() || IsSkipped()) return;
+    }
+  }
+}
+
+TEST_P(EveryAlgorithmInChangingWorlds, FollowsFiltersThatChangeAmongManyBodies) {
+  constexpr std::size_t kMany = 1200;
+  std::size_t turn = 0;
+  for (const auto& [filter_name, filter] : filters(kMany)) {
+    const auto& [presence_name, present] = inputs::kPresences[turn % inputs::kPresences.size()];
+    const auto& [change_name, changes] = inputs::kFilterChanges[turn++ % 2];
+    check({.name = fmt::format("{}, {}, filters: {}", filter_name, presence_name, change_name),
+           .filter = {},
+           .frames = framesWith({"drifting", inputs::drifting}, kMany, 5, present),
+           .filters = inputs::changingFilters(filter, kMany, 4, changes, turn)});
+    if (HasFatalFailure() || IsSkipped()) return;
   }
 }
 
@@ -146,6 +187,19 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInALevel) {
     }
     check({"level", filter, frames});
     if (HasFatalFailure() || IsSkipped()) return;
+    // Some boxes of the level join the moving bodies, and later all bodies join the level.
+    std::vector filters = {filter};
+    for (std::uint32_t frame = 1; frame < frames.size(); ++frame) {
+      std::vector<std::uint32_t> changed;
+      for (std::uint32_t body = frame; frame != 7 && body < kMany; body += 97) {
+        changed.push_back(body);
+      }
+      const BodyGroups groups{.layer = std::uint8_t{frame < 5}};
+      filters.push_back(filters.back().with(changed, std::vector(changed.size(), groups), kMany));
+    }
+    check(
+        {.name = "level with changing layers", .filter = {}, .frames = frames, .filters = filters});
+    if (HasFatalFailure() || IsSkipped()) return;
   }
 }
 
@@ -194,6 +248,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, IsRightOnWhatATortureFound) {
         entry.path().stem(), recording->scene().filter, {}, recording->scene().world};
     for (auto frame = std::optional(recording->rewind()); frame; frame = recording->next()) {
       world.frames.emplace_back(frame->boxes.begin(), frame->boxes.end());
+      if (frame->filter != nullptr) world.filters.push_back(*frame->filter);
     }
     check(world);
     if (HasFatalFailure() || IsSkipped()) return;

@@ -170,7 +170,8 @@ class TestRun {
   /// Starts a pass. Throws UnsupportedError.
   TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
     index_ = 0;
-    host_->start(scene, changed_bodies_->complete({0, first}));
+    const CollisionFilter* filter = scene.filter_changes ? &scene.filter : nullptr;
+    host_->start(scene, changed_bodies_->complete({0, first, {}, filter}));
     accumulator_.clear();
     if (test_case_.answer == AnswerKind::events) accumulateEvents(first.size());
     return *this;
@@ -178,9 +179,9 @@ class TestRun {
   TestRun& start(const std::vector<Aabb>& first) { return start(sceneOf({first}), first); }
 
   /// Runs the four phases on the next frame. Returns the pairs; of events, those accumulated so
-  /// far, and then throws std::logic_error for an impossible event.
-  PairRuns step(const std::vector<Aabb>& boxes) {
-    times_ = host_->step(changed_bodies_->complete({++index_, boxes})).times;
+  /// far, and then throws std::logic_error for an impossible event. `filter`: if filters change.
+  PairRuns step(const std::vector<Aabb>& boxes, const CollisionFilter* filter = nullptr) {
+    times_ = host_->step(changed_bodies_->complete({++index_, boxes, {}, filter})).times;
     if (test_case_.answer == AnswerKind::pairs) return broadPhase().overlaps();
     accumulateEvents(boxes.size());
     return accumulator_.pairs();

@@ -28,10 +28,10 @@ class Torture : public EndToEnd {
 
 TEST_F(Torture, ShrinksWrongAnswersAndShowsThemByACommand) {
   const ProgramResult ended = run(call({"--plugin", places::faultyPlugin(), "--algorithm",
-                                        "faulty-extra,lossy*", "--rounds", "12"}));
+                                        "faulty-extra,lossy*,stale*", "--rounds", "16"}));
   EXPECT_EQ(ended.status, 1) << ended.err;
   const Json found = log().at("found");
-  for (const std::string id : {"faulty-extra", "lossy-removal", "lossy-layers"}) {
+  for (const std::string id : {"faulty-extra", "lossy-removal", "lossy-layers", "stale-filter"}) {
     SCOPED_TRACE(id);
     const auto fault =
         std::ranges::find_if(found, [&](const Json& item) { return item.at("algorithm") == id; });

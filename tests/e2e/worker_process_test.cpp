@@ -31,7 +31,12 @@ std::vector<ChangingWorld> movingClusters() {
   constexpr inputs::Input kInput = {"clustered", inputs::clustered};
   return {{"plain", {}, framesOf(kInput, kBodies, 4)},
           {"changing", filters(kBodies).back().filter,
-           framesWith(kInput, kBodies, 4, presences::random)}};
+           framesWith(kInput, kBodies, 4, presences::random)},
+          {.name = "changing filters",
+           .filter = {},
+           .frames = framesWith(kInput, kBodies, 4, presences::random),
+           .filters = inputs::changingFilters(filters(kBodies).back().filter, kBodies, 3,
+                                              inputs::filter_changes::half, 1)}};
 }
 
 /// The pairs, or the begun and the ended pairs.
@@ -47,10 +52,14 @@ void expectSameAnswers(const Case& test_case) {
   for (const ChangingWorld& world : movingClusters()) {
     const std::vector<std::vector<Aabb>>& frames = world.frames;
     SceneInfo scene = sceneOf(frames);
-    scene.filter = world.filter;
+    scene.filter = world.filterOf(0);
+    scene.filter_changes = !world.filters.empty();
+    const auto filter_of = [&](std::uint32_t frame) {
+      return scene.filter_changes ? &world.filters[frame] : nullptr;
+    };
     scene.all_present = world.name == "plain";
     ChangeDetector changed_bodies;
-    const Frame first = changed_bodies.complete({0, frames[0]});
+    const Frame first = changed_bodies.complete({0, frames[0], {}, filter_of(0)});
     try {
       here.start(scene, first);
     } catch (const UnsupportedError&) {
@@ -62,7 +71,7 @@ void expectSameAnswers(const Case& test_case) {
           << "the initial pose";
     }
     for (std::uint32_t index = 1; index < frames.size(); ++index) {
-      const Frame frame = changed_bodies.complete({index, frames[index]});
+      const Frame frame = changed_bodies.complete({index, frames[index], {}, filter_of(index)});
       const StepResult run_here = here.step(frame);
       const StepResult run_there = there->step(frame);
       EXPECT_EQ(run_there.pairs, run_here.pairs);

@@ -55,6 +55,47 @@ TEST(CollisionFilter, OfSomeBodiesIsAsThatOfAll) {
   EXPECT_FALSE(all.of(some) == all);
 }
 
+TEST(CollisionFilter, WithOtherGroupsOfSomeBodies) {
+  const std::vector<BodyGroups> bodies = {{.world = 3}, {.layer = 1}, {}};
+  const CollisionFilter first(bodies, LayerMatrix().set(0, 1));
+  const std::vector<std::uint32_t> changed = {0, 2};
+  const std::vector<BodyGroups> groups = {{.layer = 1, .world = 9}, {.tags = {1, 2, 3}}};
+  const CollisionFilter next = first.with(changed, groups, 3);
+  EXPECT_EQ(next.groupsOf(0), (BodyGroups{.layer = 1, .world = 3})) << "worlds do not change";
+  EXPECT_EQ(next.groupsOf(1), bodies[1]);
+  EXPECT_EQ(next.groupsOf(2), groups[1]);
+  EXPECT_EQ(next.matrix(), first.matrix());
+  EXPECT_EQ(next.with(changed, first, 3), first);
+  EXPECT_NE(next, first);
+}
+
+TEST(CollisionFilter, OfChangingLayersKeepsAllOfTheMatrix) {
+  const LayerMatrix matrix = LayerMatrix().set(0, 0).set(1, 2);
+  const std::vector<BodyGroups> usual(3);
+  EXPECT_TRUE(CollisionFilter(usual, matrix).wantsAll());
+  const CollisionFilter changing(usual, matrix, true);
+  EXPECT_EQ(changing.matrix(), matrix);
+  const std::vector<std::uint32_t> bodies = {0, 2};
+  const std::vector<BodyGroups> groups = {{.layer = 1}, {.layer = 2}};
+  EXPECT_FALSE(changing.with(bodies, groups, 3).wanted(0, 1));
+  EXPECT_TRUE(changing.with(bodies, groups, 3).wanted(0, 2));
+  EXPECT_EQ(changing.of(bodies).matrix(), matrix);
+}
+
+TEST(LiveFilter, IsFollowedByItsCopies) {
+  LiveFilter live({}, 3);
+  const CollisionFilter copy = live.filter();
+  EXPECT_FALSE(copy.wantsAll());
+  EXPECT_TRUE(copy.wanted(0, 2));
+  const std::vector<BodyGroups> groups = {{.tags = {7, 8, 9}}, {}, {.tags = {1, 2, 7}}};
+  const CollisionFilter tagged(groups, LayerMatrix().set(0, 0));
+  live.update(0, tagged);
+  EXPECT_TRUE(copy.wanted(0, 2));
+  live.update(2, tagged);
+  EXPECT_FALSE(copy.wanted(0, 2));
+  EXPECT_TRUE(copy.wanted(0, 1));
+}
+
 TEST(CollisionFilter, RefusesLayersBeyondTheLast) {
   const std::vector<BodyGroups> bodies = {{.layer = 32}};
   EXPECT_THROW(CollisionFilter(bodies, LayerMatrix::all()), std::invalid_argument);

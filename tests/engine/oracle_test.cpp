@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <random>
 
+#include "algorithms/runs.h"
+#include "broadmark/harness/runner.h"
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
 #include "torture/inputs.h"
@@ -147,6 +149,23 @@ TEST(Oracle, AnswersForTheFilterItIsGiven) {
   EXPECT_EQ(oracle.pairs(boxes, none).size(), 0U);
   EXPECT_EQ(oracle.pairDigest(boxes, none).count, 0U);
   EXPECT_EQ(oracle.pairDigest(boxes).count, 2U);
+}
+
+// The filter of the frame counts, not the initial one.
+TEST(Oracle, IsAskedWithTheFilterOfTheFrame) {
+  const std::vector<std::vector<Aabb>> boxes(4, chain(3));
+  const std::vector<std::uint32_t> one = {1};
+  const CollisionFilter first(std::vector<BodyGroups>(3), LayerMatrix().set(0, 0), true);
+  const CollisionFilter apart = first.with(one, std::vector{BodyGroups{.layer = 1}}, 3);
+  FrameList frames = listed(sceneOf(boxes), boxes, {first, first, apart, first});
+  for (const AnswerKind answer : {AnswerKind::pairs, AnswerKind::events}) {
+    for (const std::string id : {"bf", "tide"}) {
+      Case test_case{.algorithm = algorithmOf(id)};
+      test_case.answer = answer;
+      const CaseResult result = runCase(test_case, frames);
+      EXPECT_EQ(result.status, Status::ok) << id << result.reason;
+    }
+  }
 }
 
 // Pairs of absent bodies, and filtered pairs, are wrong.

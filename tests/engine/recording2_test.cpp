@@ -2,6 +2,7 @@
 
 #include "broadmark/recordings/recording2.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -194,6 +195,88 @@ TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
   for (std::uint32_t f = 0; f < 3; ++f) expectFrame(reader.at(f), expected, f);
 }
 
+/// Writes frames with these filters.
+void write(const std::filesystem::path& path, const Frames& frames,
+           const std::vector<CollisionFilter>& filters) {
+  FrameList source = listed(changingSceneOf(frames), frames, filters);
+  RecordingWriter writer(path, source.scene());
+  recordAll(source, writer);
+  writer.finish();
+}
+
+TEST(Recording2, KeepsFiltersThatChange) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "a.broadmark";
+  for (const std::uint32_t last : {30U, 300U}) {  // more than one key frame at rest
+    const Frames frames = changingFrames(kSlots, last, last == 30 ? 30 : 0, false);
+    for (const auto& [change_name, changes] : inputs::kFilterChanges) {
+      for (const std::size_t kind : {std::size_t{0}, filters(kSlots).size() - 1}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", last, change_name, kind));
+        const auto all =
+            inputs::changingFilters(filters(kSlots)[kind].filter, kSlots, last, changes, last);
+        write(path, frames, all);
+        Recording2Reader reader(path);
+        EXPECT_TRUE(reader.scene().filter_changes);
+        EXPECT_EQ(reader.scene().filter, all[0]);
+        const auto expect = [&](const Frame& frame, std::uint32_t index) {
+          expectFrame(frame, frames, index);
+          ASSERT_NE(frame.filter, nullptr);
+          EXPECT_EQ(*frame.filter, all[index]);
+          std::vector<std::uint32_t> changed;
+          for (std::uint32_t body = 0; index > 0 && body < kSlots; ++body) {
+            if (all[index].groupsOf(body) != all[index - 1].groupsOf(body)) changed.push_back(body);
+          }
+          EXPECT_THAT(frame.filter_changed, ElementsAreArray(changed)) << index;
+        };
+        expect(reader.rewind(), 0);
+        for (std::uint32_t index = 1; index <= last; ++index) expect(*reader.next(), index);
+        inputs::Random random(1, last);
+        for (int i = 0; i < 60; ++i) {
+          const auto index = static_cast<std::uint32_t>(random.integer(0, static_cast<int>(last)));
+          expect(reader.at(index), index);
+        }
+      }
+    }
+  }
+}
+
+TEST(Recording2, FiltersThatChangeNeedAReaderThatKnowsThem) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "a.broadmark";
+  const Frames frames = changingFrames(kSlots, 3, 0, true);
+  const auto all = inputs::changingFilters({}, kSlots, 3, inputs::filter_changes::half, 1);
+  write(path, frames, all);
+  EXPECT_THAT(readTextFile(path), HasSubstr("\"broadmark-recording/2.1\""));
+  write(path, changingSceneOf(frames, true), frames);
+  EXPECT_THAT(readTextFile(path), HasSubstr("\"broadmark-recording/2\""));
+  FrameList source = listed(changingSceneOf(frames, true), frames, all);
+  EXPECT_EQ(recordingExtension(source.scene()), ".broadmark");
+  EXPECT_THAT(inputErrorOf([&] { RecordingWriter(directory / "a.aabbs", source.scene()); }),
+              HasSubstr(".broadmark ones do"));
+}
+
+TEST(Recording2, WritesOnlyFiltersThatTheSceneAnnounces) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "a.broadmark";
+  const Frames frames = changingFrames(4, 1, 0, true);
+  const CollisionFilter first(std::vector<BodyGroups>(4), LayerMatrix().set(0, 0).set(0, 1), true);
+  const std::vector<std::uint32_t> one = {2};
+  const CollisionFilter next = first.with(one, std::vector{BodyGroups{.layer = 1}}, 4);
+  SceneInfo scene = changingSceneOf(frames, true, first);
+  const auto write_both = [&](const CollisionFilter& a, const CollisionFilter& b) {
+    RecordingWriter writer(path, scene);
+    writer.write({0, frames[0], {}, &a});
+    writer.write({1, frames[1], {}, &b});
+    writer.finish();
+  };
+  EXPECT_THROW(write_both(first, next), std::logic_error) << "not said to change";
+  scene.filter_changes = true;
+  EXPECT_NO_THROW(write_both(first, next));
+  EXPECT_EQ(*Recording2Reader(path).at(1).filter, next);
+  EXPECT_THROW(write_both(next, next), std::logic_error) << "another initial filter";
+  EXPECT_THROW(write_both(first, CollisionFilter()), std::logic_error) << "another matrix";
+}
+
 TEST(Recording2, IsTakenOnlyWhereAabbsDoesNotDo) {
   const Frames frames = changingFrames(2, 1, 0, true);
   EXPECT_EQ(recordingFileName(changingSceneOf(frames, true)), "Changing Boxes N2 F1frames.aabbs");
@@ -213,6 +296,20 @@ Bytes smallRecording() {
   frames.push_back(frames[1]);
   frames[2][2] = kEmptyBox;
   write(directory / "a.broadmark", changingSceneOf(frames, false, filters(3)[1].filter), frames);
+  return bytesOf(directory / "a.broadmark");
+}
+
+/// In frame 1 bodies 0 and 2 change; frame 2 is a key frame with a new filter of body 1.
+Bytes smallRecordingWithFilters() {
+  const TemporaryDirectory directory;
+  Frames frames(3, chain(3));
+  for (Aabb& box : frames[2]) box = unitBox(7);
+  const CollisionFilter first(std::vector<BodyGroups>(3), LayerMatrix().set(0, 0).set(0, 1), true);
+  const BodyGroups groups{.layer = 1, .tags = {4, 5, 6}};
+  std::vector filters = {first};
+  filters.push_back(first.with(std::vector{0U, 2U}, std::vector(2, groups), 3));
+  filters.push_back(filters[1].with(std::vector{1U}, std::vector(1, groups), 3));
+  write(directory / "a.broadmark", frames, filters);
   return bytesOf(directory / "a.broadmark");
 }
 
@@ -247,18 +344,22 @@ std::size_t frameOf(const Bytes& bytes, std::uint32_t frame) {
 /// Corrects the checksums of spoilt bytes, as another writer would.
 Bytes sealed(Bytes bytes) {
   const std::size_t index = indexOf(bytes);
+  // Up to seven numbers of changed filters precede the index.
+  constexpr std::string_view kFilterChanges = "broadmark-recording/2.1";
+  const bool has_filters = !std::ranges::search(bytes, kFilterChanges).empty();
+  const std::size_t frames_end = has_filters ? index - kEntryBytes : index;
   const auto raw = std::as_bytes(std::span(bytes));
   for (std::size_t offset = index; offset + kEntryBytes < bytes.size(); offset += kEntryBytes) {
     auto entry = get<RecordedFrame>(bytes, offset);
     const std::size_t end = offset + 2 * kEntryBytes < bytes.size()
                                 ? get<RecordedFrame>(bytes, offset + kEntryBytes).offset
-                                : index;
+                                : frames_end;
     entry.hash = hashOf(raw.subspan(entry.offset, end - entry.offset));
     put(bytes, offset, entry);
   }
   Hasher hasher;
   hasher.add(raw.first(frameOf(bytes, 0)));
-  hasher.add(raw.subspan(index, bytes.size() - kEntryBytes - index));
+  hasher.add(raw.subspan(frames_end, bytes.size() - kEntryBytes - frames_end));
   put(bytes, bytes.size() - 24, hasher.value());
   return bytes;
 }
@@ -285,12 +386,36 @@ TEST(BadRecording2, TooShortOrTooLong) {
 }
 
 TEST(BadRecording2, AnyWrongByteIsNoticed) {
-  const Bytes whole = smallRecording();
-  for (std::size_t at = 0; at < whole.size(); ++at) {
-    Bytes bytes = whole;
-    bytes[at] ^= 0x10;
-    EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: ")) << "byte " << at;
+  for (const Bytes& whole : {smallRecording(), smallRecordingWithFilters()}) {
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+      Bytes bytes = whole;
+      bytes[at] ^= 0x10;
+      EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: ")) << "byte " << at;
+    }
   }
+}
+
+TEST(BadRecording2, FiltersAreNamedWithTheirBody) {
+  const Bytes whole = smallRecordingWithFilters();
+  EXPECT_EQ(faultOf(sealed(whole)), "");
+  const auto spoilt = [&](std::uint32_t frame, std::size_t offset, auto value) {
+    Bytes bytes = whole;
+    put(bytes, frameOf(bytes, frame) + offset, value);
+    return faultOf(sealed(std::move(bytes)));
+  };
+  // Frame 1 has no boxes. Frame 2: boxes, the id, then all layers and tags.
+  EXPECT_THAT(spoilt(1, 4, 9U), AllOf(HasSubstr("frame 1"), HasSubstr("body 9 among")));
+  EXPECT_THAT(spoilt(1, 4, 0U), AllOf(HasSubstr("frame 1"), HasSubstr("ascend")));
+  EXPECT_THAT(spoilt(1, 32 + 16, 32U), HasSubstr("frame 1, body 2: is in layer 32"));
+  EXPECT_THAT(spoilt(2, 96 + 32 + 16, 77U), HasSubstr("frame 2, body 1: is in layer 77"));
+  EXPECT_THAT(spoilt(2, 96 + 32 + 4, 8U), AllOf(HasSubstr("frame 2, body 0"), HasSubstr("tags")))
+      << "not among the changed ones";
+  // A number of changes that the frames do not have.
+  Bytes bytes = whole;
+  put(bytes, indexOf(bytes) - kEntryBytes + 4, 3U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("index: frame 2"));
+  put(bytes, indexOf(bytes) - kEntryBytes + 4, 4U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("4 changed filters"));
 }
 
 TEST(BadRecording2, DamagedFramesAreNamed) {

@@ -97,6 +97,39 @@ TEST(SubRecording, FillsAbsencesAndKeepsTheFilterOfItsBodies) {
   EXPECT_EQ(part.at(1).boxes[2], whole.at(2).boxes[3]);
 }
 
+TEST(SubRecording, FollowsTheFiltersOfItsBodies) {
+  constexpr std::uint32_t kLast = 8;
+  WanderingBoxes live(6, kLast, 2);
+  FrameList boxes(live);
+  const auto filters = inputs::changingFilters({}, 6, kLast, inputs::filter_changes::half, 3);
+  std::vector<std::vector<Aabb>> frames;
+  recordAll(boxes, [&](const Frame& frame) { frames.push_back(copyOf(frame)); });
+  FrameList whole = listed(boxes.scene(), frames, filters);
+  Selection some = selectionOf(whole.scene(), {1, 2, 5}, {3, 4, 8});
+  EXPECT_EQ(some.filter_changes, some.bodies);
+  const auto recorded_part = [&](const Selection& selected) {
+    SubRecording part(whole, selected, "Part");
+    EXPECT_EQ(part.scene().filter, part.at(0).filterIn(part.scene()));
+    return recorded(part);
+  };
+  const auto part = recorded_part(some);
+  EXPECT_TRUE(part->scene().filter_changes);
+  for (const std::uint32_t index : {2U, 0U, 1U}) {
+    EXPECT_EQ(*part->at(index).filter, filters[some.frames[index]].of(some.bodies));
+  }
+  // Body 2 keeps its own.
+  some.filter_changes = {1, 5};
+  some.filter = filters[8].of(some.bodies);
+  const auto fixed = recorded_part(some);
+  for (std::uint32_t index = 0; index < 3; ++index) {
+    const CollisionFilter& filter = *fixed->at(index).filter;
+    EXPECT_EQ(filter.groupsOf(0), filters[some.frames[index]].groupsOf(1));
+    EXPECT_EQ(filter.groupsOf(1), filters[8].groupsOf(2));
+  }
+  some.filter_changes.clear();
+  EXPECT_FALSE(recorded_part(some)->scene().filter_changes);
+}
+
 TEST(FrameList, HoldsAllFrames) {
   WanderingBoxes source(7, 4, 3);
   FrameList list(source);

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "engine/made_frames.h"
+#include "support/changing_worlds.h"
 #include "torture/inputs.h"
 
 namespace broadmark::tests {
@@ -108,6 +109,17 @@ TEST(SweptFrames, AreTheSameInAnyOrderAndWhetherChangesAreKnownOrNot) {
     }
     EXPECT_THAT(*frame.changed, testing::ElementsAreArray(changed)) << index;
     EXPECT_FALSE(other.changed);
+  }
+}
+
+TEST(SweptFrames, HaveTheFilterOfTheirFrame) {
+  const auto made = restlessFrames(20, 6);
+  const auto filters = inputs::changingFilters({}, 20, 5, inputs::filter_changes::half, 1);
+  inputs::GivenFrames given(inputs::sceneOf(made), made, filters);
+  SweptFrames frames(std::make_unique<FrameList>(given));
+  EXPECT_TRUE(frames.scene().filter_changes);
+  for (const std::uint32_t index : {0, 1, 2, 5, 5, 3, 0}) {
+    EXPECT_EQ(*frames.at(index).filter, filters[index]) << index;
   }
 }
 

@@ -54,6 +54,7 @@ TEST(TortureRound, CoversAllKindsOfWorldsInAllWays) {
   EXPECT_GT(sum.changing, sum.frames / 5);
   EXPECT_GT(sum.filtered, sum.frames / 5);
   EXPECT_LT(sum.changing, sum.frames / 2);
+  EXPECT_GT(sum.filter_changes, sum.frames / 12);
 }
 
 TEST(TortureRound, FindsAndShrinksEachPlantedFault) {
@@ -70,6 +71,7 @@ TEST(TortureRound, FindsAndShrinksEachPlantedFault) {
     EXPECT_TRUE(finding->minimal);
     EXPECT_LE(finding->part.bodies.size(), 3U);
     EXPECT_LE(finding->part.frames.size(), 3U);
+    EXPECT_EQ(finding->part.filter_changes.size(), algorithm.id == "stale-filter" ? 1U : 0U);
     // The shrunk part fails in its last frame.
     SubRecording part(*finding->frames, finding->part, "part");
     Trial trial(finding->test_case, options.make_executor, options.cancelled);
@@ -118,7 +120,8 @@ TEST(RandomWorlds, KeepTheirPairsInAnotherOrder) {
     const std::uint32_t last = other->scene().frames;
     ASSERT_EQ(last, world.frames->scene().frames);
     const auto count = [last](IndexedFrames& frames) {
-      return bruteForcePairs(frames.at(last).boxes, frames.scene().filter).size();
+      const Frame frame = frames.at(last);
+      return bruteForcePairs(frame.boxes, frame.filterIn(frames.scene())).size();
     };
     EXPECT_EQ(count(*other), count(*world.frames));
   }

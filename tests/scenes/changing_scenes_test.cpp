@@ -52,7 +52,6 @@ TEST(FountainScene, PopulationRisesAndFallsAndIdsAreUsedAgain) {
                                              {"period", "90"},
                                              {"engine", engine}});
     EXPECT_FALSE(simulation->scene().all_present);
-    EXPECT_TRUE(simulation->scene().filter.wantsAll());
     const Frames frames = allFrames(*simulation);
     EXPECT_EQ(populationOf(frames[0]), 25U);
     std::size_t least = 100;
@@ -85,12 +84,93 @@ TEST(FountainScene, BodiesAreThrownUpAndFall) {
   EXPECT_LT(height(70), height(20));
 }
 
-TEST(ShooterScene, HasFourLayers) {
+/// The layer of each body in each frame of a scene, and a check of Frame::filter_changed.
+std::vector<std::vector<int>> layersIn(FrameSource& source) {
+  std::vector<std::vector<int>> layers;
+  recordAll(source, [&](const Frame& frame) {
+    std::vector<int> now;
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t id = 0; id < frame.boxes.size(); ++id) {
+      now.push_back(frame.filterIn(source.scene()).groupsOf(id).layer);
+      if (!layers.empty() && layers.back()[id] != now[id]) changed.push_back(id);
+    }
+    layers.push_back(std::move(now));
+    EXPECT_THAT(frame.filter_changed, testing::ElementsAreArray(changed)) << frame.index;
+  });
+  return layers;
+}
+
+TEST(FountainScene, BodiesThatFellDoNotCollideWithThoseInTheAir) {
+  for (const std::string engine : {"bullet", "ode"}) {
+    SCOPED_TRACE(engine);
+    auto simulation =
+        sceneWith("fountain", {{"objects", "100"}, {"frames", "150"}, {"engine", engine}});
+    EXPECT_TRUE(simulation->scene().filter_changes);
+    EXPECT_EQ(simulation->scene().filter.matrix(), LayerMatrix().set(0, 0).set(1, 1));
+    const Frames frames = allFrames(*simulation);
+    const auto layers = layersIn(*simulation);
+    const double surface = simulation->scene().world.min[1] + 0.25;
+    std::size_t fallen = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      for (std::size_t id = 0; id < 100; ++id) {
+        if (isEmpty(frames[i][id]) || layers[i][id] <= layers[i - 1][id]) continue;
+        EXPECT_LE(frames[i - 1][id].min[1], surface);
+        ++fallen;
+      }
+    }
+    EXPECT_GT(fallen, 20U);
+  }
+  auto without = sceneWith("fountain", {{"objects", "100"}, {"pool", "off"}});
+  EXPECT_FALSE(without->scene().filter_changes);
+  EXPECT_TRUE(without->scene().filter.wantsAll());
+}
+
+TEST(ShooterScene, ProjectilesCollideWithTheLevelAloneForThreeFrames) {
+  auto simulation = sceneWith("shooter", {{"objects", "400"}, {"frames", "60"}});
+  EXPECT_TRUE(simulation->scene().filter_changes);
+  const Frames frames = allFrames(*simulation);
+  const auto layers = layersIn(*simulation);
+  std::size_t armed = 0;
+  for (const std::uint32_t id : bodiesIn(simulation->scene(), 2)) {
+    int unarmed_frames = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      const bool appears = isEmpty(frames[i - 1][id]) && !isEmpty(frames[i][id]);
+      if (appears) EXPECT_EQ(layers[i][id], 4) << id << " in frame " << i;
+      if (layers[i][id] == 2 && unarmed_frames > 0) {
+        EXPECT_EQ(unarmed_frames, 3) << id << " in frame " << i;
+        ++armed;
+      }
+      unarmed_frames = layers[i][id] == 4 ? unarmed_frames + 1 : 0;
+    }
+  }
+  EXPECT_GT(armed, 20U);
+  auto at_once = sceneWith("shooter", {{"objects", "400"}, {"arming", "0"}});
+  EXPECT_FALSE(at_once->scene().filter_changes);
+}
+
+// An id that is used again before its projectile is armed begins again.
+TEST(ShooterScene, ShortLivedProjectilesAreNeverArmed) {
+  auto simulation = sceneWith(
+      "shooter", {{"objects", "100"}, {"frames", "60"}, {"lifetime", "2"}, {"pause", "2"}});
+  const Frames frames = allFrames(*simulation);
+  const auto layers = layersIn(*simulation);
+  std::size_t present = 0;
+  for (const std::uint32_t id : bodiesIn(simulation->scene(), 2)) {
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      if (isEmpty(frames[i][id])) continue;
+      EXPECT_EQ(layers[i][id], 4) << id << " in frame " << i;
+      ++present;
+    }
+  }
+  EXPECT_GT(present, 20U);
+}
+
+TEST(ShooterScene, HasFourLayersAndOneOfNewProjectiles) {
   auto simulation = sceneWith("shooter", {{"objects", "400"}, {"frames", "60"}});
   const SceneInfo& scene = simulation->scene();
   EXPECT_FALSE(scene.all_present);
   const LayerMatrix matrix = scene.filter.matrix();
-  const auto wanted = LayerMatrix().set(0, 1).set(0, 2).set(1, 1).set(1, 2).set(1, 3);
+  const auto wanted = LayerMatrix().set(0, 1).set(0, 2).set(1, 1).set(1, 2).set(1, 3).set(0, 4);
   EXPECT_EQ(matrix, wanted);
   const Frames frames = allFrames(*simulation);
 

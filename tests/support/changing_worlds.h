@@ -27,6 +27,11 @@ struct ChangingWorld {
   CollisionFilter filter;
   std::vector<std::vector<Aabb>> frames;
   std::optional<Aabb> bounds = {};  ///< world bounds of the scene; by default of all boxes
+  std::vector<CollisionFilter> filters = {};  ///< of each frame, if they change
+
+  [[nodiscard]] const CollisionFilter& filterOf(std::size_t frame) const {
+    return filters.empty() ? filter : filters[frame];
+  }
 };
 
 /// The frames of an input; absent bodies have empty boxes.
@@ -42,9 +47,10 @@ inline std::vector<std::vector<Aabb>> framesWith(const inputs::Input& input, std
   return frames;
 }
 
-/// A scene of given frames.
-inline FrameList listed(SceneInfo scene, std::vector<std::vector<Aabb>> frames) {
-  inputs::GivenFrames given(std::move(scene), std::move(frames));
+/// A scene of given frames, with the filter of each if they change.
+inline FrameList listed(SceneInfo scene, std::vector<std::vector<Aabb>> frames,
+                        std::vector<CollisionFilter> filters = {}) {
+  inputs::GivenFrames given(std::move(scene), std::move(frames), std::move(filters));
   return FrameList(given);
 }
 

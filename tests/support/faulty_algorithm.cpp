@@ -2,7 +2,8 @@
 // of the program.
 //
 // "lossy-removal" and "lossy-layers" test all pairs. The first loses a pair whenever a body has
-// vanished since the previous frame, the second all pairs of two layers.
+// vanished since the previous frame, the second all pairs of two layers. "stale-filter" retains the
+// layers and tags of the initial pose.
 //
 // The other two store a fat box of each body (as Bullet's and Box2D's trees do) and all pairs of
 // overlapping fat boxes. Only bodies that left their fat box, the moved ones, get a new fat box and
@@ -25,9 +26,11 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <thread>
 
 #include "broadmark/plugin.h"
+#include "broadmark/reference_pairs.h"
 
 namespace broadmark::faulty {
 namespace {
@@ -184,6 +187,23 @@ void losePairsOfTwoLayers(std::vector<Pair>& answer, const SceneInfo& scene,
   });
 }
 
+class StaleFilter final : public BoxBroadPhase {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    std::vector<std::uint32_t> all(scene.objects);
+    std::iota(all.begin(), all.end(), 0U);
+    filter_ = scene.filter.of(all);
+  }
+  void findPairs() override {
+    for (const Pair pair : bruteForcePairs(boxes(), filter_)) pairs().add(pair.a, pair.b);
+  }
+
+ private:
+  CollisionFilter filter_;
+};
+
 template <class Spoil>
 Algorithm changingVariant(const std::string& id, const std::string& summary, Spoil spoil) {
   return {.id = id,
@@ -196,6 +216,13 @@ Algorithm changingVariant(const std::string& id, const std::string& summary, Spo
                           .space = "O(n + k)",
                           .source = "a test of Broadmark's, wrong on purpose"},
           .create = [spoil] { return std::make_unique<LossyBruteForce<Spoil>>(spoil); }};
+}
+
+Algorithm staleVariant() {
+  Algorithm variant =
+      changingVariant("stale-filter", "ignores changes of layers and tags", losePairsOfTwoLayers);
+  variant.create = [] { return std::make_unique<StaleFilter>(); };
+  return variant;
 }
 
 Algorithm variant(const std::string& id, const std::string& summary, Fault fault) {
@@ -217,7 +244,8 @@ std::vector<Algorithm> variants() {
   return {variant("faulty", "loses a pair once in some hundred frames", Fault::missed),
           variant("faulty-extra", "reports false pairs", Fault::extra),
           changingVariant("lossy-removal", "loses a pair when a body vanishes", losePairAtRemoval),
-          changingVariant("lossy-layers", "loses all pairs of two layers", losePairsOfTwoLayers)};
+          changingVariant("lossy-layers", "loses all pairs of two layers", losePairsOfTwoLayers),
+          staleVariant()};
 }
 
 }  // namespace broadmark::faulty

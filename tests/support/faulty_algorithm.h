@@ -8,7 +8,8 @@
 namespace broadmark::faulty {
 
 /// "faulty" misses pairs, "faulty-extra" reports false pairs. In changing worlds, "lossy-removal"
-/// misses a pair when a body vanishes, and "lossy-layers" misses pairs of two layers.
+/// misses a pair when a body vanishes, "lossy-layers" misses pairs of two layers, and
+/// "stale-filter" ignores changes of the collision filter.
 std::vector<Algorithm> variants();
 
 }  // namespace broadmark::faulty
