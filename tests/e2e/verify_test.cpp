@@ -110,6 +110,45 @@ TEST_F(Verify, DescribesAWorldThatChanges) {
   EXPECT_EQ(known.at("filter").at("layer_pairs").size(), 1U);
 }
 
+TEST_F(Verify, DescribesFiltersThatChange) {
+  SceneInfo scene{"Handmade", "Cubes", 0, 0, {{-5, -5, -5, 0}, {5, 5, 5, 0}}, true};
+  const std::vector<std::vector<Aabb>> boxes(3, {kUnitBox, kUnitBox});
+  const CollisionFilter first(std::vector<BodyGroups>(2), LayerMatrix().set(0, 0).set(0, 7), true);
+  const std::vector<std::uint32_t> second_body = {1};
+  const auto apart = first.with(second_body, std::vector{BodyGroups{.layer = 9}}, 2);
+  const auto again = first.with(second_body, std::vector{BodyGroups{.layer = 7}}, 2);
+  FrameList frames = listed(scene, boxes, {first, apart, again});
+  RecordingWriter writer(file("known.broadmark"), frames.scene());
+  recordAll(frames, writer);
+  writer.finish();
+  const ProgramResult ended =
+      runQuietly({"verify", "--describe", "known.broadmark", "--json", "known.json"});
+  EXPECT_THAT(ended.out, HasSubstr("1 bodies a frame with a new layer or new tags"));
+  const Json filter = readJson(file("known.json")).at("recordings").at(0).at("filter");
+  EXPECT_EQ(filter.at("changed"), 1.0);
+  EXPECT_EQ(filter.at("layers").size(), 3U) << "0, 7 and 9";
+  EXPECT_EQ(filter.at("layer_pairs"), Json::parse(R"([{"layers": [0, 0], "pairs": 0.0},
+                                                      {"layers": [0, 7], "pairs": 0.5}])"));
+  // All of it survives a conversion, and .aabbs is refused.
+  runQuietly({"convert", "known.broadmark", "again.broadmark"});
+  const auto converted = openRecordingFile(file("again.broadmark"));
+  EXPECT_EQ(*converted->at(2).filter, again);
+  EXPECT_EQ(*converted->at(1).filter, apart);
+  EXPECT_EQ(converted->scene().filter, first);
+  const ProgramResult refused = run({"convert", "known.broadmark", "known.aabbs"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("known.aabbs"));
+  // Every answer is checked with the filter of its frame, also of swept boxes.
+  runQuietly({"--headless", "known.broadmark", "--algorithm",
+              "bf,sap,kd,tide,dbvt-f,axis-sweep,tracy", "--answer", "events", "--json", "r.json"});
+  runQuietly(
+      {"--headless", "known.broadmark", "--swept", "--algorithm", "bf,kd", "--json", "s.json"});
+  for (const std::string name : {"r.json", "s.json"}) {
+    const Json results = readJson(file(name));
+    for (const Json& result : results.at("cases")) EXPECT_EQ(result.at("status"), "ok");
+  }
+}
+
 TEST_F(Verify, DescribesWhatItCan) {
   writeFile(file("known.aabbs"), leavingBox());
   writeFile(file("empty.aabbs"), recordingOf(0, 3, {}));

@@ -9,8 +9,11 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
+#include "broadmark/scenes/simulation.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
+#include "inspector/run/frame_provider.h"
+#include "inspector/run/snapshot.h"
 
 namespace broadmark::tests {
 namespace {
@@ -317,6 +320,34 @@ TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
   const RunProgress seen = waitUntilIdle();
   EXPECT_EQ(seen.snapshot->frame, 11U);
   EXPECT_EQ(seen.tracks.size(), session.tracks.list.size());
+}
+
+// Forward and back, as the frames and their answers are stored.
+TEST(FrameProvider, KeepsTheFiltersOfALiveSimulation) {
+  const auto fountain = [] {
+    auto simulation = makeSimulation("fountain");
+    setParameters(*simulation, {{"objects", "60"}, {"frames", "60"}});
+    return simulation;
+  };
+  std::vector<CollisionFilter> filters;
+  const auto known = fountain();
+  recordAll(*known, [&](const Frame& frame) { filters.push_back(*frame.filter); });
+  ASSERT_NE(filters.back(), filters.front());
+  for (const bool swept : {false, true}) {
+    FrameProvider provider(fountain(), swept);
+    while (provider.lastAvailable() < 60) provider.simulateNext();
+    const std::unique_ptr<IndexedFrames> opened = provider.opener()(60);
+    for (const std::uint32_t index : {60, 3, 59, 30, 0}) {
+      EXPECT_EQ(*provider.at(index).filter, filters[index]) << index;
+      EXPECT_EQ(*opened->at(index).filter, filters[index]) << index;
+    }
+    Oracle oracle;
+    const std::shared_ptr<const FrameProviderRequest> source;
+    const auto snapshot = captureSnapshot(
+        {.source = source, .provider = provider, .frame = 60, .trail_bodies = {}}, oracle);
+    EXPECT_EQ(snapshot->scene.filter, filters[60]);
+    EXPECT_EQ(snapshot->pairs, bruteForcePairs(*snapshot->boxes, filters[60]));
+  }
 }
 
 }  // namespace
