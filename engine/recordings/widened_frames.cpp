@@ -61,6 +61,8 @@ std::span<const Aabb> WidenedFrames::readBoxes(std::uint32_t index) {
   // Change detection needs the widened boxes of the frame before.
   if (index > 0 && last != index - 1) widenAll(frames_->at(index - 1));
   const Frame frame = frames_->at(index);
+  filter_ = frame.filter;
+  filter_changed_ = frame.filter_changed;
   reports_changes_ = frame.changed.has_value();
   changed_.clear();
   if (index == 0 || !reports_changes_) {

@@ -39,6 +39,10 @@ class WidenedFrames final : public IndexedFrames {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override;
+  [[nodiscard]] const CollisionFilter* filter() const override { return filter_; }
+  [[nodiscard]] std::span<const std::uint32_t> filterChanged() const override {
+    return filter_changed_;
+  }
   void widenAll(const Frame& frame);
 
   std::unique_ptr<IndexedFrames> frames_;
@@ -48,6 +52,9 @@ class WidenedFrames final : public IndexedFrames {
   LargeVector<Aabb> boxes_;            ///< widened
   bool reports_changes_ = false;
   std::vector<std::uint32_t> changed_;  ///< bodies with changed widened boxes
+  // As in frames_, until its next frame.
+  const CollisionFilter* filter_ = nullptr;
+  std::span<const std::uint32_t> filter_changed_;
 };
 
 }  // namespace broadmark
