@@ -1,9 +1,8 @@
 #include "tide/loose_grid.h"
 
-#include <fmt/format.h>
-
 #include <bit>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "prefetch.h"
@@ -308,7 +307,7 @@ std::string LooseGrid::validate() const {
     const GridBox box = layout_.quantize(body.box);
     const std::uint32_t level = GridLayout::levelOf(box);
     if (!isEveryAxis(box.size() <= layout_.level(level).max_size)) {
-      return fmt::format("body {} is larger than the maximum of its level", i);
+      return "body " + std::to_string(i) + " is larger than the maximum of its level";
     }
     const PackedBounds bounds = layout_.packBounds(box, box, level);
     bool is_stored = false;
@@ -318,7 +317,7 @@ std::string LooseGrid::validate() const {
         is_stored |= bucket.bodies[slot] == i && packedOverlap(bucket.bounds[slot], bounds);
       }
     }
-    if (!is_stored) return fmt::format("body {} is not in its cell", i);
+    if (!is_stored) return "body " + std::to_string(i) + " is not in its cell";
   }
   return buckets_.validate(present);
 }

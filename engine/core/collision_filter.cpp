@@ -2,10 +2,9 @@
 
 #include "broadmark/collision_filter.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace broadmark {
 
@@ -41,8 +40,8 @@ CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const Layer
   store(&BodyGroups::tags, BodyGroups::kNoTags, data->tags);
   for (const std::uint8_t layer : data->layers) {
     if (layer >= LayerMatrix::kLayers) {
-      throw std::invalid_argument(
-          fmt::format("layer {}: there are layers 0 to {}", layer, LayerMatrix::kLayers - 1));
+      throw std::invalid_argument("layer " + std::to_string(layer) + ": there are layers 0 to " +
+                                  std::to_string(LayerMatrix::kLayers - 1));
     }
   }
   const bool has_groups = !data->layers.empty() || !data->worlds.empty() || !data->tags.empty();

@@ -1,8 +1,6 @@
-// Linux's view of the cores: sched_getaffinity, /proc/stat, /sys/devices/system/cpu.
+// Linux's view of the cores: /proc/stat, /sys/devices/system/cpu.
 
 #include "broadmark/cores.h"
-
-#include <sched.h>
 
 #include <algorithm>
 #include <array>
@@ -59,17 +57,6 @@ std::tuple<bool, double> disadvantage(int core, const std::vector<int>& chosen,
 double busyShare(const BusyShares& busy, int core) {
   const auto found = busy.find(core);
   return found == busy.end() ? 0 : found->second;
-}
-
-std::vector<int> usableCores() {
-  std::vector<int> cores;
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (::sched_getaffinity(0, sizeof set, &set) != 0) return {0};
-  for (int core = 0; core < CPU_SETSIZE; ++core) {
-    if (CPU_ISSET(core, &set)) cores.push_back(core);
-  }
-  return cores;
 }
 
 int availableCores(const SystemFolders& folders) {

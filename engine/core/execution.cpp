@@ -53,6 +53,17 @@ bool bind(pthread_t thread, std::span<const int> cores, int excluded = -1) {
 
 }  // namespace
 
+std::vector<int> usableCores() {
+  std::vector<int> cores;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (::sched_getaffinity(0, sizeof set, &set) != 0) return {0};
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &set)) cores.push_back(core);
+  }
+  return cores;
+}
+
 bool isaSupported(Isa isa) {
   switch (isa) {
     case Isa::scalar:
@@ -87,13 +98,13 @@ std::vector<Isa> supportedIsas() {
 
 Isa bestIsa() { return supportedIsas().back(); }
 
-ThreadTeam::ThreadTeam(int size) : spins_(0) {
+ThreadTeam::ThreadTeam(int size) : size_(std::max(size, 1)) {
   std::vector<int> usable = usableCores();
   if (std::cmp_less_equal(size, usable.size())) {
     spins_ = kSpins;
     shared_cores_ = std::move(usable);
   }
-  threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
+  threads_.reserve(static_cast<std::size_t>(size_ - 1));
   try {
     for (int worker = 1; worker < size; ++worker) {
       threads_.emplace_back([this, worker] { workerLoop(worker); });
@@ -103,6 +114,9 @@ ThreadTeam::ThreadTeam(int size) : spins_(0) {
     throw;
   }
 }
+
+ThreadTeam::ThreadTeam(int size, ParallelFor parallel_for)
+    : size_(std::max(size, 1)), parallel_for_(std::move(parallel_for)) {}
 
 ThreadTeam::~ThreadTeam() { stop(); }
 
@@ -157,6 +171,11 @@ void ThreadTeam::wake() {
 
 void ThreadTeam::start(Job job) {
   job_ = job;
+  if (parallel_for_) {
+    parallel_for_(size_, [this](int worker) { runJob(worker); });
+    if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
+    return;
+  }
   busy_.store(size() - 1, std::memory_order_relaxed);
   if (!threads_.empty()) {
     avoidCallerCore();

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <concepts>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -34,6 +35,10 @@ std::vector<Isa> supportedIsas();
 /// The widest supported instruction set.
 Isa bestIsa();
 
+/// Somebody else's threads: calls job(worker) once for each worker below `workers`, in any order,
+/// at the same time or one after another, and returns when all calls have.
+using ParallelFor = std::function<void(int workers, const std::function<void(int worker)>& job)>;
+
 /// Exactly `size` workers, the caller being worker 0. A benchmark needs a fixed number of threads
 /// with fixed shares (same answer for the same count, no stealing, no allocation per call); that,
 /// and a clean ThreadSanitizer, is why this is not a task scheduler. Given enough cores, no worker
@@ -41,11 +46,13 @@ Isa bestIsa();
 class ThreadTeam {
  public:
   explicit ThreadTeam(int size);
+  /// Workers without threads of their own: each job runs by a call of `parallel_for`.
+  ThreadTeam(int size, ParallelFor parallel_for);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
-  [[nodiscard]] int size() const { return static_cast<int>(threads_.size()) + 1; }
+  [[nodiscard]] int size() const { return size_; }
 
   /// Binds worker i, the caller being worker 0, to the core `cores[i]`. Returns whether the system
   /// allowed all bindings; if not, all workers may use the cores `usable`.
@@ -82,7 +89,9 @@ class ThreadTeam {
   void workerLoop(int worker);
   void stop();
 
-  int spins_;  ///< spins of a waiting worker before it sleeps
+  int size_;
+  ParallelFor parallel_for_;  ///< null: own threads
+  int spins_ = 0;             ///< spins of a waiting worker before it sleeps
   Job job_;
   /// Twice the number of jobs so far; plus one after wake().
   std::atomic<unsigned> generation_{0};
@@ -107,6 +116,9 @@ class ExecutionContext {
  public:
   ExecutionContext(int threads, Isa isa, std::string device = {})
       : isa_(isa), device_(std::move(device)), team_(threads) {}
+  /// On somebody else's threads.
+  ExecutionContext(int threads, Isa isa, ParallelFor parallel_for)
+      : isa_(isa), team_(threads, std::move(parallel_for)) {}
   /// Destroys the latest resource first: it may depend on earlier ones.
   ~ExecutionContext() {
     while (!resources_.empty()) resources_.pop_back();
