@@ -26,6 +26,8 @@
 // Source: Broadmark. Loose cells: T. Ulrich, "Loose Octrees", Game Programming Gems, 2000. Levels:
 // C. Ericson, "Real-Time Collision Detection", 2005, 7.2 (hierarchical hash grids).
 
+#include "tide.h"
+
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -276,6 +278,8 @@ std::string Tide::validate() const {
 }
 
 }  // namespace
+
+std::unique_ptr<BroadPhase> create() { return std::make_unique<Tide>(); }
 
 std::vector<Algorithm> variants() {
   const Algorithm family = {
