@@ -1,6 +1,7 @@
 # Installs and exports the program and the libraries: find_package(broadmark) provides
 # broadmark::engine, broadmark::algorithms and broadmark::scenes, and the program for plug-ins to link
-# to.
+# to. Its component broadphase, which can be installed alone, provides broadmark::broadphase and
+# broadmark::broadphase_static.
 include(CMakePackageConfigHelpers)
 
 set(installed broadmark_engine broadmark_core broadmark_statistics broadmark_recordings broadmark_harness
@@ -33,10 +34,30 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/broadmark)
 install(EXPORT broadmark_targets NAMESPACE broadmark:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/broadmarkConfig.cmake.in
   ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake INSTALL_DESTINATION ${package_dir})
+install(TARGETS broadmark_broadphase_shared broadmark_broadphase_static
+  EXPORT broadmark_broadphase_targets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT broadphase
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT broadphase
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT broadphase)
+if(BROADMARK_APP)  # building the program builds all that is installed with it
+  add_dependencies(broadmark broadmark_broadphase_shared broadmark_broadphase_static)
+endif()
+install(EXPORT broadmark_broadphase_targets NAMESPACE broadmark:: FILE broadphase_targets.cmake
+  DESTINATION ${package_dir} COMPONENT broadphase)
+file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(broadphase/broadmark-broadphase.pc.in
+  ${PROJECT_BINARY_DIR}/broadmark-broadphase.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/broadmark-broadphase.pc
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT broadphase)
+set(library_documents ${CMAKE_INSTALL_DATADIR}/doc/libbroadmark-broadphase-dev)
+install(FILES LICENSE DESTINATION ${library_documents} RENAME copyright COMPONENT broadphase)
+install(FILES docs/embedding.md DESTINATION ${library_documents} COMPONENT broadphase)
+install(DIRECTORY broadphase/examples DESTINATION ${library_documents} COMPONENT broadphase)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
-  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake DESTINATION ${package_dir})
+  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake DESTINATION ${package_dir}
+  COMPONENT broadphase)
 list(TRANSFORM dependencies PREPEND cmake/ OUTPUT_VARIABLE finders)
 install(FILES ${finders} cmake/Plugin.cmake DESTINATION ${package_dir})
 

@@ -1,5 +1,16 @@
-# `cpack` in the build folder makes a Debian package of the installed files.
+# `cpack` in the build folder makes two Debian packages of the installed files: the library for engines
+# and games (component broadphase), and all the rest, which includes it.
 set(CPACK_GENERATOR DEB)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME broadmark)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_DEPENDS "libbroadmark-broadphase-dev (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_BROADPHASE_PACKAGE_NAME libbroadmark-broadphase-dev)
+set(CPACK_DEBIAN_BROADPHASE_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_BROADPHASE_PACKAGE_SUGGESTS "cmake, g++, make, pkg-config")
+set(CPACK_COMPONENT_BROADPHASE_DESCRIPTION "Broad-phase collision detection, for engines and games
+Finds the pairs of bodies whose boxes overlap, or the changes to these pairs,
+from frame to frame. For C++ and C; depends on the C++ standard library alone.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
@@ -39,7 +50,7 @@ endif()
 if(BROADMARK_OPENCL)
   list(APPEND suggested ocl-icd-opencl-dev pocl-opencl-icd)
 endif()
-list(JOIN recommended ", " CPACK_DEBIAN_PACKAGE_RECOMMENDS)
-list(JOIN suggested ", " CPACK_DEBIAN_PACKAGE_SUGGESTS)
+list(JOIN recommended ", " CPACK_DEBIAN_UNSPECIFIED_PACKAGE_RECOMMENDS)
+list(JOIN suggested ", " CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS)
 
 include(CPack)

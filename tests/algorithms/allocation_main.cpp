@@ -8,9 +8,11 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
+#include <numeric>
 #include <vector>
 
 #include "algorithms/runs.h"
+#include "broadphase/worlds.h"
 #include "support/changing_worlds.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
@@ -140,6 +142,38 @@ TEST_P(SteadyState, AllocatesNothingWhileFiltersRest) {
   for (const Configuration& config : allConfigurations(GetParam())) {
     EXPECT_EQ(allocationsPerRound(GetParam(), config, kBodies, filter, true), 0)
         << describe(GetParam(), config);
+  }
+}
+
+// The library for engines, with bodies that come and go, listed changes and saved states.
+TEST(SteadyStateOfTheLibrary, AllocatesNothing) {
+  if (BROADMARK_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted here";
+  constexpr std::size_t kBodies = 5000;
+  std::vector<std::vector<bp::Box>> frames;
+  for (std::uint32_t frame = 0; frame < 6; ++frame) {
+    BoxList boxes = inputs::drifting(kBodies, frame, 1);
+    for (std::size_t body = frame; body < kBodies; body += 50) boxes[body] = kEmptyBox;
+    frames.push_back(publicBoxes(boxes));
+  }
+  std::vector<std::uint32_t> all(kBodies);
+  std::iota(all.begin(), all.end(), 0U);
+  std::vector<std::byte> state;
+  for (bp::Options options : allOptions()) {
+    for (const int threads : {1, 2, 3}) {
+      options.threads = threads;
+      options.parallel_for = threads == 3 ? runBackwards : bp::ParallelFor();
+      bp::BroadPhase object(options);
+      long before = allocations;
+      object.update(frames[0]);
+      EXPECT_GT(allocations, before) << "its allocations are not seen";
+      for (int round = 0; round <= 3; ++round) {
+        before = allocations;
+        for (const std::vector<bp::Box>& boxes : frames) object.update(boxes);
+        for (const std::vector<bp::Box>& boxes : frames) object.update(boxes, all);
+        object.save(state);
+      }
+      EXPECT_EQ(allocations - before, 0) << describe(options);
+    }
   }
 }
 

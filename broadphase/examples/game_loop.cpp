@@ -1,0 +1,63 @@
+// A game loop: crates that fly through a level of pillars, come and go, and are told when they
+// begin and cease to touch something.
+
+#include <broadmark/broadphase.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+namespace bp = broadmark::broadphase;
+
+int main() {
+  constexpr std::uint32_t kPillars = 400, kCrates = 1000, kFrames = 240;
+  enum Layer : std::uint32_t { pillars, crates };
+
+  bp::Options options;
+  options.answer = bp::Answer::events;
+  options.margin = 0.05F;                    // contacts are made a little before boxes touch
+  options.collides[pillars] = 1U << crates;  // pillars stand still: not each other
+  options.collides[crates] = 1U << pillars | 1U << crates;
+  bp::BroadPhase broad_phase(options);
+
+  std::mt19937 random(1);
+  const auto anywhere = [&] { return static_cast<float>(random() % 1000) * 0.1F; };
+  std::vector<bp::Box> boxes;
+  std::vector<float> speeds(kPillars, 0.0F);
+  for (std::uint32_t body = 0; body < kPillars; ++body) {
+    const float x = static_cast<float>(body % 20) * 5, z = static_cast<float>(body / 20) * 5;
+    boxes.push_back({{x, 0, z}, {x + 1, 20, z + 1}});
+  }
+  const auto crate = [&]() -> bp::Box {
+    const float x = anywhere(), y = anywhere() / 5, z = anywhere();
+    return {{x, y, z}, {x + 1, y + 1, z + 1}};
+  };
+  std::vector<std::uint32_t> contacts(kPillars + kCrates);  // of each body
+  for (std::uint32_t body = kPillars; body < kPillars + kCrates; ++body) {
+    broad_phase.setFilter(body, {.layer = crates});
+    boxes.push_back(crate());
+    speeds.push_back(body % 3 == 0 ? 0.0F : anywhere() / 100);  // some are at rest
+  }
+
+  std::uint64_t begun = 0, over = 0;
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    for (std::uint32_t body = kPillars; body < boxes.size(); ++body) {
+      if (boxes[body].min[0] > boxes[body].max[0]) {  // a slot that is free
+        if (random() % 8 == 0) boxes[body] = crate();
+      } else if (boxes[body].max[0] > 110) {
+        boxes[body] = bp::kNoBox;  // has left the level
+      } else {
+        boxes[body].min[0] += speeds[body];
+        boxes[body].max[0] += speeds[body];
+      }
+    }
+    broad_phase.update(boxes);  // finds out by itself what has changed
+    for (const auto [a, b] : broad_phase.began()) ++contacts[a], ++contacts[b], ++begun;
+    for (const auto [a, b] : broad_phase.ended()) --contacts[a], --contacts[b], ++over;
+  }
+  std::uint64_t touching = 0;
+  for (const std::uint32_t count : contacts) touching += count;
+  std::printf("%llu contacts began, %llu ended\n", static_cast<unsigned long long>(begun),
+              static_cast<unsigned long long>(over));
+  return touching == 2 * (begun - over) && begun > 0 ? 0 : 1;
+}

@@ -1,0 +1,175 @@
+// Broad-phase collision detection for engines and games: the pairs of bodies whose boxes overlap,
+// or the changes to these pairs, from frame to frame. Example: examples/game_loop.cpp; costs and
+// limits: docs/embedding.md.
+//
+//   broadmark::broadphase::BroadPhase broad_phase({.margin = 0.1F});
+//   broad_phase.update(boxes);  // in every frame; body i has boxes[i]
+//   for (const auto [a, b] : broad_phase.pairs()) ...
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace broadmark::broadphase {
+
+/// An axis-aligned box. Intervals are closed: boxes that touch overlap.
+struct Box {
+  float min[3];
+  float max[3];
+};
+
+/// The box of a body that is absent: an unused slot.
+inline constexpr Box kNoBox = {
+    {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+     std::numeric_limits<float>::infinity()},
+    {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+     -std::numeric_limits<float>::infinity()}};
+
+/// Two bodies, a < b.
+struct [[gnu::may_alias]] Pair {
+  std::uint32_t a;
+  std::uint32_t b;
+
+  friend bool operator==(const Pair&, const Pair&) = default;
+  friend auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+/// The caller's boxes, wherever they lie: body i has three floats at `min` and three at `max`, both
+/// `stride` bytes further for each body.
+struct Boxes {
+  const float* min = nullptr;
+  const float* max = nullptr;
+  std::size_t count = 0;
+  std::size_t stride = sizeof(Box);
+
+  Boxes() = default;
+  Boxes(const float* mins, const float* maxs, std::size_t number, std::size_t bytes_apart)
+      : min(mins), max(maxs), count(number), stride(bytes_apart) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): arrays and vectors of boxes are boxes
+  Boxes(std::span<const Box> boxes) : count(boxes.size()) {
+    if (boxes.empty()) return;
+    min = boxes.data()->min;
+    max = boxes.data()->max;
+  }
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  Boxes(const std::vector<Box>& boxes) : Boxes(std::span<const Box>(boxes)) {}
+};
+
+/// Which pairs a body is in, besides its box.
+struct Filter {
+  static constexpr std::uint32_t kNoTag = 0xFFFF'FFFF;
+
+  std::uint32_t layer = 0;  ///< 0 to 31: Options::collides tells which layers collide
+  /// Bodies that share a tag are no pair: the limbs of a ragdoll, triangles that share a vertex.
+  std::array<std::uint32_t, 3> tags = {kNoTag, kNoTag, kNoTag};
+
+  friend bool operator==(const Filter&, const Filter&) = default;
+};
+
+enum class Method {
+  tide,    ///< the cost grows with the number of moving bodies; many: the same as columns
+  columns  ///< finds all pairs anew
+};
+enum class Answer {
+  pairs,  ///< pairs(): all pairs of the frame
+  events  ///< began() and ended(): their changes since the update before
+};
+/// The answer is the same set for the same boxes, always.
+enum class Order {
+  sorted,  ///< ascending by a, then b: independent of threads, processor, method and history
+  any      ///< as found; may differ between processors, and after restore()
+};
+enum class InstructionSet { best, scalar, sse2, neon, avx2, avx512 };
+/// What is done with the ids given to update(boxes, changed).
+enum class Changes {
+  verified,  ///< all boxes are compared; a changed body that is not listed throws
+  trusted    ///< only the listed bodies and new ones are read; what is not listed stays as it was
+};
+
+/// The caller's job system: calls job(i) exactly once for each i below `jobs`, in any order, at the
+/// same time or one after another, and returns when all calls have returned.
+using ParallelFor = std::function<void(int jobs, const std::function<void(int)>& job)>;
+
+struct Options {
+  Method method = Method::tide;
+  Answer answer = Answer::pairs;
+  Order order = Order::sorted;
+  Changes changes = Changes::verified;
+  /// Threads, the caller's included. Worlds that were built with few bodies use one.
+  int threads = 1;
+  /// Runs the work of `threads` threads; empty: own threads.
+  ParallelFor parallel_for = {};
+  InstructionSet instruction_set = InstructionSet::best;
+  /// Each box is enlarged by this on every side, rounded outward: also finds what is closer than
+  /// twice the margin on every axis. Finite, not negative.
+  float margin = 0;
+  /// Bit b of row a: layers a and b collide. Symmetric.
+  std::array<std::uint32_t, 32> collides = [] {
+    std::array<std::uint32_t, 32> all{};
+    for (std::uint32_t& row : all) row = 0xFFFF'FFFF;
+    return all;
+  }();
+};
+
+/// Finds the pairs of a world of bodies. A body's id is the index of its box; ids of absent bodies
+/// may be reused.
+///
+/// std::invalid_argument: the call is at fault, and has changed nothing. std::logic_error: it is
+/// not allowed now. Both in release builds, too. If an update fails by anything else (no memory, an
+/// exception from the job system), only restore() and destruction are allowed afterwards.
+///
+/// One thread at a time: a call during another one throws std::logic_error. In a steady state
+/// update() and save() allocate nothing.
+class BroadPhase {
+ public:
+  static constexpr std::size_t kMaxBodies = (std::size_t{1} << 29) - 1;
+
+  explicit BroadPhase(const Options& options = {});
+  ~BroadPhase();
+  BroadPhase(BroadPhase&&) noexcept;
+  BroadPhase& operator=(BroadPhase&&) noexcept;
+
+  /// Takes the boxes of all bodies, copies those that changed, and finds the answer. Bodies may
+  /// appear and vanish (kNoBox), and their number may change: those beyond the end are gone.
+  /// Throws std::invalid_argument for NaN, infinite bounds, min > max, or too many bodies.
+  void update(const Boxes& boxes);
+  /// The same if the caller knows which bodies changed: moved, appeared or vanished. In any order;
+  /// listing others, or one twice, does no harm. What Options::changes says is done with them.
+  void update(const Boxes& boxes, std::span<const std::uint32_t> changed);
+
+  /// Sets a body's filter, from the next update on, which then costs as much as the first one. The
+  /// body need not exist yet; the filter stays when it vanishes.
+  void setFilter(std::uint32_t body, const Filter& filter);
+
+  /// The answer of the last update (none before the first); valid until the next one or restore().
+  /// Throws std::logic_error if Options::answer is the other.
+  [[nodiscard]] std::span<const Pair> pairs() const;
+  [[nodiscard]] std::span<const Pair> began() const;
+  [[nodiscard]] std::span<const Pair> ended() const;
+
+  /// The number of boxes in the last update.
+  [[nodiscard]] std::size_t size() const;
+
+  /// The state after the last update, as bytes: equal states give equal bytes, if the answer is
+  /// sorted. Reuses the memory of `state`. Not between setFilter() and update().
+  void save(std::vector<std::byte>& state) const;
+  /// Back to a saved state, of this or another object with the same answer, margin and layers: the
+  /// answer is the saved one, the next update's events are relative to it. Costs as much as an
+  /// update from the present boxes to the saved ones, and is a valid update of a failed object.
+  /// Throws std::invalid_argument for anything else than saved bytes.
+  void restore(std::span<const std::byte> state);
+
+ private:
+  class Implementation;
+  [[nodiscard]] Implementation& implementation() const;
+
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace broadmark::broadphase
