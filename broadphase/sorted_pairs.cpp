@@ -85,7 +85,7 @@ void PairArray::apply(PairRun began, PairRun ended) {
   Pair* out = pairs_.data();
   const Pair* in = spare_.data();
   const Pair* const in_end = in + spare_.size();
-  const auto copyUntil = [&](const Pair* end) {
+  const auto copy_until = [&](const Pair* end) {
     if (end != in) std::memcpy(out, in, static_cast<std::size_t>(end - in) * sizeof(Pair));
     out += end - in;
     in = end;
@@ -95,7 +95,7 @@ void PairArray::apply(PairRun began, PairRun ended) {
   while (begins != began.end() || ends != ended.end()) {
     const bool is_end = begins == began.end() || (ends != ended.end() && *ends < *begins);
     const Pair event = is_end ? *ends : *begins;
-    copyUntil(firstNotLess(in, in_end, event));
+    copy_until(firstNotLess(in, in_end, event));
     if (is_end != (in != in_end && *in == event)) {
       throw std::logic_error("an event contradicts the pairs before it");
     }
@@ -106,7 +106,7 @@ void PairArray::apply(PairRun began, PairRun ended) {
       *out++ = *begins++;
     }
   }
-  copyUntil(in_end);
+  copy_until(in_end);
   pairs_.resize(static_cast<std::size_t>(out - pairs_.data()));
 }
 
