@@ -172,7 +172,9 @@ bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(n
 OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
   NamedSource source(name);
   OpenedSource opened = openAny(source, options);
-  for (PlanEntry& entry : opened.entries) adaptBoxes(entry.source, options.reading);
+  for (PlanEntry& entry : opened.entries) {
+    if (!entry.known) adaptBoxes(entry.source, options.reading);  // a result states its own
+  }
   return opened;
 }
 
@@ -253,10 +255,11 @@ std::string importText(const Source& source) {
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
   for (const auto& [name, value] : options.changed()) {
-    const auto uses = [&, key = name](const PlanEntry& entry) {
-      const bool is_of_all_imports = key == "format" || key == "strict";
-      return entry.source.reference.reading.contains(key) ||
-             (is_of_all_imports && entry.source.imported);
+  OpenedSource opened = openAny(source, options);
+  for (PlanEntry& entry : opened.entries) {
+    if (!entry.known) adaptBoxes(entry.source, options.reading);  // a result states its own
+  }
+  return opened;
     };
     if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(

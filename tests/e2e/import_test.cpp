@@ -107,6 +107,10 @@ TEST_F(Import, AnySourceCanBeWidened) {
   runQuietly({"--headless", "w.json", "--case", result["id"], "--json", "again.json"});
   EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], result["recording"]);
 
+  runQuietly({"--headless", "w.json", "--case", result["id"], "--widen", "1e30", "--json", "-"});
+  expectRefusal({"--headless", "w.json", "--quiet", "--case", result["id"], "--widen", "2"},
+                {"--widen"});
+
   // Imported so, they are boxes like any others; and so are those of scenes.
   EXPECT_EQ(run({"import", "boxes.csv", "--widen", "1", "-o", "wide"}).status, 0);
   runQuietly({"--headless", "wide.broadmark", "--algorithm", "sap", "--json", "i.json"});
