@@ -263,7 +263,7 @@ void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
             static_cast<double>(lines.integer(words[(*columns.images)[axis]], "an image flag"));
       }
       if (!columns.is_scaled) centre[axis] += value;
-      for (std::size_t i = 0; i < 3; ++i) centre[i] += edges * cell.edges[axis][i];
+      for (std::size_t k = 0; k < 3; ++k) centre[k] += edges * cell.edges[axis][k];
     }
     const double size = radiusOf(lines, words, columns, radius);
     frame.rows.push_back({.id = columns.id ? lines.integer(words[*columns.id], "the id") : i,

@@ -291,8 +291,9 @@ TEST_F(TextImports, BoxesOfLammps) {
                            "xy xz yz ff ss mm\n0 10 0\n0 10 0\n0 10 0"}) {
     EXPECT_THAT(balls("a.dump", dump(cube, scaled)), expected) << cube;
   }
-  EXPECT_THAT(balls("a.dump", dump("xy xz yz pp pp pp\n0 12 2\n0 10 0\n0 10 0", scaled)),
-              ElementsAre(ballAt(1.4F, 2, 3), ballAt(5, 5, 6)));
+  EXPECT_THAT(balls("a.dump", dump("xy xz yz pp pp pp\n0 12 2\n0 10 0\n0 10 0",
+                                   "id xs ys zs\n1 .25 .5 .75\n2 .4 .5 .6\n")),
+              ElementsAre(ballAt(3.5F, 5, 7.5F), ballAt(5, 5, 6)));
   // xy = -2, xz = 1, yz = 3, from (1 1 1) by 10: the bounds are those of the cuboid around it.
   EXPECT_THAT(balls("a.dump", dump("xy xz yz pp pp pp\n-1 12 -2\n1 14 1\n1 11 3",
                                    "id xs ys zs\n1 0 0 0\n2 .5 .5 .5\n")),
