@@ -107,7 +107,7 @@ TEST(Usage, OfTheManual) {
 TEST(Usage, OptionsAreInGroups) {
   ReadingOptions reading;
   for (const std::string& name : parameterNames(reading)) {
-    for (const std::string& command : {"", "import", "verify", "duel"}) {
+    for (const std::string command : {"", "import", "verify", "duel"}) {
       const std::string help =
           printedBy(command.empty() ? std::vector<std::string>{"--help"}
                                     : std::vector{command, std::string("--help")});
