@@ -48,7 +48,7 @@ CaseComparison DuelSeries::run(const DuelSide& before, const DuelSide& after,
   CaseComparison compared = compareSides(result, 0, 1, comparison_);
   if (!quiet_) {
     progress_.printError(fmt::format("{}: {}; {} in {}", after.name, verdictText(compared),
-                                     progressText(result), waitingTime(result.seconds)));
+                                     progressText(result), durationText(result.seconds)));
   }
   progress_.update(finished_ * static_cast<std::uint64_t>(kStepsPerDuel));
   const std::uint32_t frames = recording.scene().frames;

@@ -205,7 +205,7 @@ TEST_F(Settle, SaysWhyNot) {
   EXPECT_THAT(no_program.out, HasSubstr("gone: "));
   expectRefusal({"compare", "before.json", "after.json", "--settle"},
                 {"--settle", "--baseline-program"});
-  expectRefusal({"compare", "before.json", "after.json", "--with", "x"}, {"--settle"});
+  expectRefusal({"compare", "before.json", "after.json", "--baseline-program", "x"}, {"--settle"});
 }
 
 TEST_F(Compare, SeveralBaselines) {

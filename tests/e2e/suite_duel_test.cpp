@@ -163,8 +163,8 @@ TEST_F(SuiteDuel, BadRequestsAreRefused) {
   expectRefusal(duelOf({"--algorithm", "sap"}), {"at least two variants"});
   expectRefusal(duelOf({"--algorithm", "sapp"}), {"'sapp'", "'sap'"});
   expectRefusal({"duel", "freefall", "sap", "kd", "--threads", "2"}, {"--threads", "--algorithm"});
-  expectRefusal(duelOf({"--algorithm", "sap", "--with", "gone"}), {"gone"});
-  expectRefusal(duelOf({"--algorithm", "sap", "--with", "/bin/false"}), {"/bin/false"});
+  expectRefusal(duelOf({"--algorithm", "sap", "--baseline-program", "gone"}), {"gone"});
+  expectRefusal(duelOf({"--algorithm", "sap", "--baseline-program", "/bin/false"}), {"/bin/false"});
   expectRefusal(duelOf({"--algorithm", "sap", "--baseline-plugin", quick_}), {"--plugin"});
   expectRefusal(duelOf({"--algorithm", "sap,kd", "--fail-above", "-3"}), {"--fail-above", "'-3'"});
   expectRefusal({"duel", "gone.aabbs", "--algorithm", "sap,kd"}, {"gone.aabbs"});
