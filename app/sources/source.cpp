@@ -255,11 +255,10 @@ std::string importText(const Source& source) {
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
   for (const auto& [name, value] : options.changed()) {
-  OpenedSource opened = openAny(source, options);
-  for (PlanEntry& entry : opened.entries) {
-    if (!entry.known) adaptBoxes(entry.source, options.reading);  // a result states its own
-  }
-  return opened;
+    const auto uses = [key = name, wanted = value](const PlanEntry& entry) {
+      const ParameterValues& reading = entry.source.reference.reading;
+      const auto stated = reading.find(key);
+      return stated != reading.end() && stated->second == wanted;
     };
     if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(

@@ -13,18 +13,18 @@
 namespace broadmark {
 namespace {
 
-constexpr float kMaxFloat = std::numeric_limits<float>::max();
+constexpr float kLargestFloat = std::numeric_limits<float>::max();
 
 /// The smallest float that is at least a + b; the largest float beyond its range.
 float sumRoundedUp(double a, double b) {
   const double sum = a + b;
-  if (sum > kMaxFloat) return kMaxFloat;
+  if (sum > kLargestFloat) return kLargestFloat;
   // What is missing from the sum, exactly (Knuth's two-sum).
   const double b_part = sum - a;
   const double error = (a - (sum - b_part)) + (b - b_part);
   const auto nearest = static_cast<float>(sum);
   if (nearest > sum || (nearest == sum && error <= 0)) return nearest;
-  return std::nextafter(nearest, kMaxFloat);
+  return std::nextafter(nearest, kLargestFloat);
 }
 
 }  // namespace

@@ -16,34 +16,26 @@ namespace {
 
 constexpr const char* kTemporaryName = "the frames simulated so far";
 
-/// The collision filters of the frames so far; empty unless filters change.
-class FilterLog {
- public:
-  void append(const CollisionFilter& filter) {
+}  // namespace
+
+/// Shared by readers on any thread.
+struct FrameProvider::Written {
+  FileDescriptor boxes = unnamedFile();
+
+  void append(const SceneInfo& scene, const Frame& frame) {
+    writeAll(boxes.get(), std::as_bytes(frame.boxes), kTemporaryName);
+    if (!scene.filter_changes) return;
     const std::lock_guard lock(mutex_);
-    filters_.push_back(filter);
+    filters_.push_back(frame.filterIn(scene));
   }
-  [[nodiscard]] CollisionFilter at(std::uint32_t frame) const {
+  [[nodiscard]] CollisionFilter filterOf(std::uint32_t frame) const {
     const std::lock_guard lock(mutex_);
     return filters_.at(frame);
   }
 
  private:
   mutable std::mutex mutex_;
-  std::vector<CollisionFilter> filters_;
-};
-
-}  // namespace
-
-/// Shared by readers on any thread.
-struct FrameProvider::Written {
-  FileDescriptor boxes = unnamedFile();
-  FilterLog filters;
-
-  void append(const SceneInfo& scene, const Frame& frame) {
-    writeAll(boxes.get(), std::as_bytes(frame.boxes), kTemporaryName);
-    if (scene.filter_changes) filters.append(frame.filterIn(scene));
-  }
+  std::vector<CollisionFilter> filters_;  ///< by frame; empty unless filters change
 };
 
 /// Reads the frames written so far. Frames not written yet cannot be read.
@@ -60,7 +52,7 @@ class FrameProvider::TemporaryFrames final : public IndexedFrames {
     if (readAll(written_->boxes.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
       throw InputError(fmt::format("{}: cannot read frame {}", kTemporaryName, index));
     }
-    if (scene_.filter_changes) filter_ = written_->filters.at(index);
+    if (scene_.filter_changes) filter_ = written_->filterOf(index);
     return boxes_;
   }
   [[nodiscard]] const CollisionFilter* filter() const override {
