@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <set>
 
 #include "broadmark/error.h"
-#include "broadmark/json_fields.h"
 #include "imports/line_reader.h"
 #include "imports/mesh.h"
 
@@ -113,9 +113,14 @@ class ObjReader {
   /// may be a damaged 'v': to leave it out would shift the numbers of all vertices behind it.
   void leaveOut() {
     constexpr std::size_t kMaxNames = 8;
-    if (words_[0].find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") != words_[0].npos) {
-      lines_.fail(fmt::format("'{}' is no statement of OBJ files",
-                              onOneLine(std::string(words_[0].substr(0, 40)))));
+    if (words_[0].find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") !=
+        std::string_view::npos) {
+      std::string shown;  // also what would be invisible
+      for (const char c : words_[0].substr(0, 40)) {
+        shown += c > ' ' && c <= '~' ? std::string(1, c)
+                                     : fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
+      }
+      lines_.fail(fmt::format("'{}' is no statement of OBJ files", shown));
     }
     if (left_out.size() < kMaxNames) left_out.emplace(words_[0].substr(0, 40));
   }

@@ -65,7 +65,8 @@ TEST_F(MeshImport, EveryAlgorithmFollowsAMeshThatChanges) {
     for (const Json& result : results) {
       EXPECT_EQ(result["status"], "ok") << result["id"];
       EXPECT_EQ(result["recording"]["objects"], 6);
-      if (result["algorithm"] == "bf") pairs = result["frame_counts"]["pairs"];
+      if (result["algorithm"] == "bf")
+        pairs = result["frame_counts"]["pairs"].get<std::vector<int>>();
     }
     return pairs;
   };
