@@ -239,8 +239,8 @@ std::string importText(const Source& source) {
     return fmt::format("({:.6g} {:.6g} {:.6g})", point[0], point[1], point[2]);
   };
   std::string text = fmt::format(
-      "{}: {}: {} {}, initial pose and {}, box {} to {}, units {}", source.reference.path,
-      summary.format, scene.objects, imports::lowered(scene.object_type),
+      "{}: {}: {} ({}), initial pose and {}, box {} to {}, units {}", source.reference.path,
+      summary.format, counted(scene.objects, "body", "bodies"), imports::lowered(scene.object_type),
       counted(scene.frames, "frame"), corner(scene.world.min), corner(scene.world.max),
       summary.units.empty() ? "not stated" : onOneLine(summary.units));
   const auto add = [&](const char* what, const std::vector<std::string>& parts) {

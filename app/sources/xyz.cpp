@@ -177,8 +177,9 @@ class XyzFormat final : public imports::TextFormat {
 bool recognises(const imports::FileStart& start) {
   std::vector<std::string_view> lines;
   std::string_view text = start.text;
+  const char line_end = text.find('\n') == std::string_view::npos ? '\r' : '\n';
   while (!text.empty() && lines.size() < 3) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::size_t end = std::min(text.find(line_end), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.ends_with('\r')) line.remove_suffix(1);

@@ -44,6 +44,7 @@ TEST_F(Recognition, ByContentWhateverTheName) {
   for (const char* name : {"dump.100", "a.dat", "a", "a.csv", "a.obj", "a.json", "a.lammpsdump"}) {
     EXPECT_EQ(formatOf(name, kDump), "lammps") << name;
     EXPECT_EQ(formatOf(name, "\xEF\xBB\xBF\r\n 1 \r\n\r\nA 1 2 3\r\n"), "xyz") << name;
+    EXPECT_EQ(formatOf(name, "1\r\rA 1 2 3\r"), "xyz") << name;
     EXPECT_EQ(formatOf(name, "0\nempty\n"), "xyz") << name;
     EXPECT_EQ(formatOf(name, "0;0;0;0;0;1;1;1\n"), "csv") << name;
     EXPECT_EQ(formatOf(name, "# from a program\nname\tx_min\tx_max\ty_min\ty_max\tz_min\tz_max\n"),

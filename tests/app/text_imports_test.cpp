@@ -346,7 +346,8 @@ TEST_F(TextImports, WhatWasUnderstoodIsSaid) {
   const Source left_out = source("a.csv", heading + ",mass\n1,0,0,0,1,2,3,5\n");
   EXPECT_THAT(
       importText(left_out),
-      AllOf(HasSubstr("a.csv: CSV: 1 boxes, initial pose and 0 frames, box (0 0 0) to (1 2 3)"),
+      AllOf(HasSubstr(
+                "a.csv: CSV: 1 body (boxes), initial pose and 0 frames, box (0 0 0) to (1 2 3)"),
             HasSubstr("used: columns id, min_x"), HasSubstr("left out: columns mass")));
   EXPECT_THAT(inputErrorOf([&] {
                 source("a.csv", heading + ",mass\n1,0,0,0,1,2,3,5\n", {{"strict", "on"}});

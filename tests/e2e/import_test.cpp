@@ -156,8 +156,9 @@ TEST_F(Import, SaysWhatItUnderstood) {
             "frame,id,mass,min_x,min_y,min_z,max_x,max_y,max_z\n"
             "0,0,5,0,0,0,1,1,1\n1,0,5,0,0,0,1,1,2\n");
   const auto is_said = [&](const std::string& text) {
-    EXPECT_THAT(text, HasSubstr("mass.csv: CSV: 1 boxes, initial pose and 1 frame, box (0 0 0) to "
-                                "(1 1 2), units not stated\n"));
+    EXPECT_THAT(text,
+                HasSubstr("mass.csv: CSV: 1 body (boxes), initial pose and 1 frame, box (0 0 0) to "
+                          "(1 1 2), units not stated\n"));
     EXPECT_THAT(text, HasSubstr("used: columns frame, id, min_x"));
     EXPECT_THAT(text, HasSubstr("left out: columns mass"));
   };
@@ -181,7 +182,8 @@ TEST_F(Import, ReadsPipesAndCompressedFiles) {
   EXPECT_EQ(shell("cat boxes.csv | broadmark --headless -" + options + "pipe.json"), 0);
   EXPECT_EQ(shell("cat named.dat | broadmark --headless /dev/stdin" + options + "stdin.json"), 0);
   EXPECT_EQ(shell("broadmark --headless - " + options + "file.json < boxes.csv"), 0);
-  EXPECT_EQ(shell("(cat boxes.csv > fifo &) && broadmark --headless fifo" + options + "fifo.json"), 0);
+  EXPECT_EQ(shell("(cat boxes.csv > fifo &) && broadmark --headless fifo" + options + "fifo.json"),
+            0);
   for (const char* name : {"gz.json", "pipe.json", "stdin.json", "file.json", "fifo.json"}) {
     EXPECT_THAT(pairsOf(file(name)), ElementsAre(0, 0)) << name;
   }
