@@ -55,10 +55,10 @@ class TextImports : public Imports {
 };
 
 TEST_F(TextImports, LinesEndInAnyWay) {
-  for (const std::string& text : {"a\nb\n\nc", "a\r\nb\r\n\r\nc\r\n", "a\rb\r\rc\r",
-                                  "\xEF\xBB\xBF"
-                                  "a\nb\n\nc\n",
-                                  "a\r\r\nb\r\r\n\nc\n"}) {
+  for (const char* text : {"a\nb\n\nc", "a\r\nb\r\n\r\nc\r\n", "a\rb\r\rc\r",
+                           "\xEF\xBB\xBF"
+                           "a\nb\n\nc\n",
+                           "a\r\r\nb\r\r\n\nc\n"}) {
     imports::LineReader lines(write("lines.txt", text));
     std::vector<std::string> found;
     while (lines.next()) found.emplace_back(lines.line());
@@ -350,7 +350,8 @@ TEST_F(TextImports, WhatWasUnderstoodIsSaid) {
                 "a.csv: CSV: 1 body (boxes), initial pose and 0 frames, box (0 0 0) to (1 2 3)"),
             HasSubstr("used: columns id, min_x"), HasSubstr("left out: columns mass")));
   EXPECT_THAT(inputErrorOf([&] {
-                source("a.csv", heading + ",mass\n1,0,0,0,1,2,3,5\n", {{"strict", "on"}});
+                static_cast<void>(
+                    source("a.csv", heading + ",mass\n1,0,0,0,1,2,3,5\n", {{"strict", "on"}}));
               }),
               AllOf(HasSubstr("--strict"), HasSubstr("mass")));
   const Source whole = source("b.csv", heading + "\n1,0,0,0,1,2,3\n", {{"strict", "on"}});
