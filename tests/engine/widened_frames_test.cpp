@@ -22,9 +22,9 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr float kTiniest = std::numeric_limits<float>::denorm_min();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kLargestFloat = std::numeric_limits<float>::max();
+constexpr float kTiniestFloat = std::numeric_limits<float>::denorm_min();
+constexpr float kInfiniteFloat = std::numeric_limits<float>::infinity();
 
 Aabb cube(float low, float high) { return {{low, low, low, 0}, {high, high, high, 0}}; }
 Aabb onX(float low, float high) { return {{low, 0, 0, 0}, {high, 1, 1, 0}}; }
@@ -54,9 +54,11 @@ TEST(WidenedBox, IsTheSmallestAroundTheGrownOne) {
     const double distance = number(-20, 20);
     const Aabb widened = widenedBox(cube(bound, bound), distance);
     ASSERT_TRUE(holds(bound, distance / 2, widened.max[0])) << seed;
-    ASSERT_FALSE(holds(bound, distance / 2, std::nextafter(widened.max[0], -kInfinity))) << seed;
+    ASSERT_FALSE(holds(bound, distance / 2, std::nextafter(widened.max[0], -kInfiniteFloat)))
+        << seed;
     ASSERT_TRUE(holds(-bound, distance / 2, -widened.min[0])) << seed;
-    ASSERT_FALSE(holds(-bound, distance / 2, -std::nextafter(widened.min[0], kInfinity))) << seed;
+    ASSERT_FALSE(holds(-bound, distance / 2, -std::nextafter(widened.min[0], kInfiniteFloat)))
+        << seed;
   }
 }
 
@@ -70,7 +72,8 @@ TEST(WidenedBox, MeetsAnotherAtExactlyTheDistance) {
     };
     EXPECT_TRUE(meet(far)) << distance;
     EXPECT_TRUE(meet(far / 2)) << distance;
-    EXPECT_FALSE(meet(std::nextafter(std::nextafter(far, kInfinity), kInfinity) * 1.0001F))
+    EXPECT_FALSE(
+        meet(std::nextafter(std::nextafter(far, kInfiniteFloat), kInfiniteFloat) * 1.0001F))
         << distance;
   }
   EXPECT_FALSE(overlaps(widenedBox(onX(0, 1), 0.5), widenedBox(onX(1.5000001F, 2), 0.5)));
@@ -82,22 +85,22 @@ TEST(WidenedBox, OfAnAbsentBodyIsEmpty) {
 }
 
 TEST(WidenedBox, StaysFiniteAndKeepsThePairs) {
-  const Aabb huge = cube(-kLargest, kLargest);
+  const Aabb huge = cube(-kLargestFloat, kLargestFloat);
   EXPECT_EQ(widenedBox(huge, 1), huge);
   EXPECT_EQ(widenedBox(huge, kMaxWidening), huge);
-  EXPECT_EQ(widenedBox(cube(3.4028e38F, kLargest), kMaxWidening).max[0], kLargest);
+  EXPECT_EQ(widenedBox(cube(3.4028e38F, kLargestFloat), kMaxWidening).max[0], kLargestFloat);
   // Two corners of the world of floats: as far apart as boxes can be.
-  const Aabb low = widenedBox(cube(-kLargest, -kLargest), kMaxWidening);
-  const Aabb high = widenedBox(cube(kLargest, kLargest), kMaxWidening);
+  const Aabb low = widenedBox(cube(-kLargestFloat, -kLargestFloat), kMaxWidening);
+  const Aabb high = widenedBox(cube(kLargestFloat, kLargestFloat), kMaxWidening);
   EXPECT_FALSE(overlaps(low, high));
-  EXPECT_TRUE(overlaps(high, widenedBox(cube(kLargest, kLargest), 0)));
-  EXPECT_LT(high.min[0], kLargest);
+  EXPECT_TRUE(overlaps(high, widenedBox(cube(kLargestFloat, kLargestFloat), 0)));
+  EXPECT_LT(high.min[0], kLargestFloat);
 }
 
 TEST(WidenedBox, RoundsOutwardWhatIsLostOtherwise) {
   // Distances far below the resolution of the bounds.
   for (const double distance :
-       {1e-30, double{kTiniest}, std::numeric_limits<double>::denorm_min()}) {
+       {1e-30, double{kTiniestFloat}, std::numeric_limits<double>::denorm_min()}) {
     const Aabb widened = widenedBox(cube(1, 2), distance);
     EXPECT_EQ(widened.min[0], std::nextafter(1.0F, 0.0F)) << distance;
     EXPECT_EQ(widened.max[0], std::nextafter(2.0F, 3.0F)) << distance;
@@ -105,8 +108,10 @@ TEST(WidenedBox, RoundsOutwardWhatIsLostOtherwise) {
     EXPECT_LT(around_zero.min[0], 0) << distance;
     EXPECT_GT(around_zero.max[0], 0) << distance;
   }
-  EXPECT_EQ(widenedBox(cube(kTiniest, kTiniest), 2.0 * kTiniest), cube(0, 2 * kTiniest));
-  EXPECT_EQ(widenedBox(cube(-kTiniest, kTiniest), kTiniest), cube(-2 * kTiniest, 2 * kTiniest));
+  EXPECT_EQ(widenedBox(cube(kTiniestFloat, kTiniestFloat), 2.0 * kTiniestFloat),
+            cube(0, 2 * kTiniestFloat));
+  EXPECT_EQ(widenedBox(cube(-kTiniestFloat, kTiniestFloat), kTiniestFloat),
+            cube(-2 * kTiniestFloat, 2 * kTiniestFloat));
 }
 
 TEST(WidenedFrames, NameThemselvesAndWidenTheirWorld) {
