@@ -18,7 +18,7 @@ constexpr const char* kTemporaryName = "the frames simulated so far";
 
 }  // namespace
 
-/// Shared by readers on any thread.
+/// The boxes in a file, and the filters if they change. Shared by readers on any thread.
 struct FrameProvider::Written {
   FileDescriptor boxes = unnamedFile();
 
@@ -35,7 +35,7 @@ struct FrameProvider::Written {
 
  private:
   mutable std::mutex mutex_;
-  std::vector<CollisionFilter> filters_;  ///< by frame; empty unless filters change
+  std::vector<CollisionFilter> filters_;  ///< by frame
 };
 
 /// Reads the frames written so far. Frames not written yet cannot be read.
