@@ -73,13 +73,10 @@ class Recording2File final : public RecordingFile {
 
   void requireAnnounced(const Frame& frame) const {
     const CollisionFilter& known = scene().filter;
-    bool is_announced = true;
-    if (frame.index == 0) {
-      is_announced = *frame.filter == known;
-    } else if (!frame.filter_changed.empty()) {
-      is_announced = scene().filter_changes && frame.filter->matrix() == known.matrix() &&
-                     std::ranges::equal(frame.filter->worlds(), known.worlds());
-    }
+    const CollisionFilter& now = *frame.filter;
+    const bool is_announced = now == known || (frame.index > 0 && scene().filter_changes &&
+                                               now.matrix() == known.matrix() &&
+                                               std::ranges::equal(now.worlds(), known.worlds()));
     if (is_announced) return;
     throw std::logic_error(
         fmt::format("{}: frame {}: the scene does not announce this filter", name(), frame.index));

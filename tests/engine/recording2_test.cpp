@@ -412,9 +412,9 @@ TEST(BadRecording2, FiltersAreNamedWithTheirBody) {
       << "not among the changed ones";
   // A number of changes that the frames do not have.
   Bytes bytes = whole;
-  put(bytes, indexOf(bytes) - kEntryBytes + 4, 3U);
-  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("index: frame 2"));
-  put(bytes, indexOf(bytes) - kEntryBytes + 4, 4U);
+  put(bytes, indexOf(bytes) - kEntryBytes + 8, 3U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("the frames end at byte"));
+  put(bytes, indexOf(bytes) - kEntryBytes + 8, 4U);
   EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("4 changed filters"));
 }
 
