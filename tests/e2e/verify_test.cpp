@@ -123,7 +123,7 @@ TEST_F(Verify, DescribesFiltersThatChange) {
   writer.finish();
   const ProgramResult ended =
       runQuietly({"verify", "--describe", "known.broadmark", "--json", "known.json"});
-  EXPECT_THAT(ended.out, HasSubstr("1 bodies a frame with a new layer or new tags"));
+  EXPECT_THAT(ended.out, HasSubstr("bodies with a new layer or new tags: 1 a frame"));
   const Json filter = readJson(file("known.json")).at("recordings").at(0).at("filter");
   EXPECT_EQ(filter.at("changed"), 1.0);
   EXPECT_EQ(filter.at("layers").size(), 3U) << "0, 7 and 9";
