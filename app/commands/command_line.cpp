@@ -29,6 +29,7 @@
 #include "support/build_parts.h"
 #include "support/exit_status.h"
 #include "support/output.h"
+#include "support/table.h"
 
 namespace broadmark {
 
@@ -42,16 +43,17 @@ namespace broadmark {
 namespace {
 
 /// The end of the main command's help.
-std::string closingText() {
+std::string closingText(std::size_t width) {
   std::string text = "\nExit status:\n";
   for (const auto& [status, meaning] : kExitStatuses.entries) {
     text += fmt::format("  {:<4}{}\n", static_cast<int>(status), meaning);
   }
-  text += '\n';
+  std::string closing = "'broadmark COMMAND --help' shows a command's options, --help-all all.";
   if (parts::kInspector.included) {
-    text += "Without --headless or a command, the inspector opens, with SOURCE if one is given.\n";
+    closing +=
+        " Without --headless or a command, the inspector opens, with SOURCE if one is given.";
   }
-  return text + "'broadmark COMMAND --help' shows a command's options, --help-all everything.\n";
+  return text + '\n' + wrapped(closing, 0, 0, width) + '\n';
 }
 
 std::vector<Command> allCommands() {
@@ -73,7 +75,7 @@ class HelpFormatter final : public CLI::FormatterBase {
         text += '\n' + helpText(*command, name + ' ' + command->get_name(), width);
       }
     }
-    return text + closingText();
+    return text + closingText(width);
   }
 };
 
