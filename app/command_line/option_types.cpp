@@ -400,8 +400,9 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
         throw InputError(fmt::format("{}: {}", name, error.what()));
       }
     };
-    const bool choice = std::holds_alternative<Choice*>(parameter.value);
-    const std::string type = choice ? parameterRange(parameter) : "NUMBER";
+    std::string type = "NUMBER";
+    if (std::holds_alternative<Choice*>(parameter.value)) type = parameterRange(parameter);
+    if (std::holds_alternative<std::string*>(parameter.value)) type = "NAME";
     const auto get = [&options, key = std::string(parameter.name)] {
       return parameterValues(options).at(key);
     };
