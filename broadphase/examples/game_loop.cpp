@@ -15,9 +15,8 @@ int main() {
 
   bp::Options options;
   options.answer = bp::Answer::events;
-  options.margin = 0.05F;                    // contacts are made a little before boxes touch
-  options.collides[pillars] = 1U << crates;  // pillars stand still: not each other
-  options.collides[crates] = 1U << pillars | 1U << crates;
+  options.margin = 0.05F;                        // contacts are made a little before boxes touch
+  options.setCollides(pillars, pillars, false);  // they stand still
   bp::BroadPhase broad_phase(options);
 
   std::mt19937 random(1);

@@ -94,6 +94,8 @@ TEST_F(BroadphaseMisuse, OfOptionsThrows) {
   EXPECT_THAT(with([](auto& o) { o.margin = -1; }), HasSubstr("margin"));
   EXPECT_THAT(with([](auto& o) { o.margin = NAN; }), HasSubstr("margin"));
   EXPECT_THAT(with([](auto& o) { o.collides[3] = 0; }), HasSubstr("layers 0 and 3"));
+  EXPECT_EQ(with([](auto& o) { o.setCollides(3, 0, false); }), "no exception");
+  EXPECT_THROW(with([](auto& o) { o.setCollides(3, 32); }), std::out_of_range);
   EXPECT_EQ(with([](auto& o) { o.method = static_cast<bp::Method>(2); }), "method: no value 2");
   EXPECT_EQ(with([](auto& o) { o.order = static_cast<bp::Order>(-1); }), "order: no value -1");
   const bp::InstructionSet foreign =

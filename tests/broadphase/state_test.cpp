@@ -55,7 +55,7 @@ std::vector<bp::Options> sortedOptions() {
   std::erase_if(all, [](const bp::Options& o) { return o.order != bp::Order::sorted; });
   for (bp::Options& options : all) {
     options.margin = 0.01F;
-    options.collides = LayerMatrix::all().set(1, 2, false).rows();
+    options.setCollides(1, 2, false);
   }
   return all;
 }

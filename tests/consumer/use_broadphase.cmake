@@ -1,6 +1,8 @@
 # Installs the broad-phase library alone into a fresh prefix, then builds and runs its examples against
 # it by CMake and by pkg-config. Arguments: BUILD_DIR, SOURCE_DIR (of the examples), WORK_DIR, COMPILER,
 # C_COMPILER, STRIP, NM, LIBRARY (the shared one's file name), PKG_CONFIG.
+cmake_minimum_required(VERSION 3.25)
+
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)

@@ -110,12 +110,22 @@ struct Options {
   /// Each box is enlarged by this on every side, rounded outward: also finds what is closer than
   /// twice the margin on every axis. Finite, not negative.
   float margin = 0;
-  /// Bit b of row a: layers a and b collide. Symmetric.
+  /// Bit b of row a: layers a and b collide. Symmetric: see setCollides(). By default all do.
   std::array<std::uint32_t, 32> collides = [] {
     std::array<std::uint32_t, 32> all{};
     for (std::uint32_t& row : all) row = 0xFFFF'FFFF;
     return all;
   }();
+
+  /// Sets whether two layers collide, or one with itself. Throws std::out_of_range.
+  void setCollides(std::size_t a, std::size_t b, bool collide = true) {
+    std::uint32_t& row_a = collides.at(a);
+    std::uint32_t& row_b = collides.at(b);
+    const std::uint32_t bit_a = std::uint32_t{1} << a;
+    const std::uint32_t bit_b = std::uint32_t{1} << b;
+    row_a = collide ? row_a | bit_b : row_a & ~bit_b;
+    row_b = collide ? row_b | bit_a : row_b & ~bit_a;
+  }
 };
 
 /// Finds the pairs of a world of bodies. A body's id is the index of its box; ids of absent bodies
