@@ -8,19 +8,21 @@ set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_DEPENDS "libbroadmark-broadphase-dev (= ${P
 set(CPACK_DEBIAN_BROADPHASE_PACKAGE_NAME libbroadmark-broadphase-dev)
 set(CPACK_DEBIAN_BROADPHASE_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_BROADPHASE_PACKAGE_SUGGESTS "cmake, g++, make, pkg-config")
-set(CPACK_COMPONENT_BROADPHASE_DESCRIPTION "Broad-phase collision detection, for engines and games
-Finds the pairs of bodies whose boxes overlap, or the changes to these pairs,
-from frame to frame. For C++ and C; depends on the C++ standard library alone.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PACKAGE_CONTACT "Broadmark developers <broadmark@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION "\
+# Each begins with its summary.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
+set(CPACK_COMPONENT_UNSPECIFIED_DESCRIPTION "${PROJECT_DESCRIPTION}
 Broadmark generates physics scenes, records them, runs broad-phase algorithms
 on exactly the same boxes, checks every answer and measures every phase. The
 package contains the program, and libraries for measuring your own broad
 phase.")
+set(CPACK_COMPONENT_BROADPHASE_DESCRIPTION "Broad-phase collision detection, for engines and games
+Finds the pairs of bodies whose boxes overlap, or the changes to these pairs,
+from frame to frame. For C++ and C; depends on the C++ standard library alone.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # linked libraries
