@@ -6,11 +6,13 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "broadmark/reference_pairs.h"
 #include "engine/helpers.h"
@@ -108,6 +110,28 @@ TEST(ThreadTeam, RethrowsWhicheverWorkerFailsAndGoesOn) {
   std::atomic<int> ran = 0;
   team.run([&](int) { ++ran; });
   EXPECT_EQ(ran, 4);
+}
+
+TEST(ThreadTeam, RunsJobsOnThreadsOfTheCaller) {
+  int calls = 0;
+  ThreadTeam team(3, [&](int workers, const std::function<void(int)>& job) {
+    ++calls;
+    for (int worker = workers; worker-- > 0;) job(worker);
+  });
+  ASSERT_EQ(team.size(), 3);
+  team.wake();
+  std::vector<int> ran;
+  team.run([&](int worker) { ran.push_back(worker); });
+  EXPECT_EQ(ran, (std::vector<int>{2, 1, 0}));
+  EXPECT_THROW(team.run([&](int worker) {
+    ran.push_back(worker);
+    if (worker == 2) throw std::runtime_error("failed");
+  }),
+               std::runtime_error);
+  EXPECT_EQ(ran.size(), 6U);
+  team.run([&](int worker) { ran.push_back(worker); });
+  EXPECT_EQ(ran.size(), 9U);
+  EXPECT_EQ(calls, 3);
 }
 
 TEST(ThreadTeam, MadeAndDestroyedUnused) {
