@@ -154,8 +154,8 @@ class BroadPhase {
   /// listing others, or one twice, does no harm. What Options::changes says is done with them.
   void update(const Boxes& boxes, std::span<const std::uint32_t> changed);
 
-  /// Sets a body's filter, from the next update on, which then costs as much as the first one. The
-  /// body need not exist yet; the filter stays when it vanishes.
+  /// Sets a body's filter, from the next update on, which then costs at least as much as the first.
+  /// The body need not exist yet; the filter stays when it vanishes.
   void setFilter(std::uint32_t body, const Filter& filter);
 
   /// The answer of the last update (none before the first); valid until the next one or restore().

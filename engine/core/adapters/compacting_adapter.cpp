@@ -49,7 +49,8 @@ class CompactingAdapter final : public BroadPhase {
     boxes_.reserve(scene.objects);
     if (worlds_->translates()) true_boxes_.reserve(scene.objects);
     bodies_.reserve(scene.objects);
-    changed_.reserve(scene.objects);
+    changed_.reserve(scene.objects + std::size_t{1});
+    is_changed_.reserve(scene.objects);
     activated_.reserve(scene.objects);
     applyChanges({first.index, first.boxes, all});
     changed_.clear();
@@ -143,9 +144,29 @@ class CompactingAdapter final : public BroadPhase {
     for (const std::uint32_t body : *frame.changed) {
       if (index_of_[body] != kAbsent) store(body, frame.boxes[body]);
     }
-    std::ranges::sort(changed_);
-    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-    std::erase_if(changed_, [this](std::uint32_t index) { return index >= boxes_.size(); });
+    sortChanged();
+  }
+
+  /// Ascending, each once, and without those that a removal has moved since.
+  void sortChanged() {
+    constexpr std::size_t kMaxSortedShare = 32;  // about where a sort costs as much
+    if (kMaxSortedShare * changed_.size() < boxes_.size()) {
+      std::ranges::sort(changed_);
+      changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+      std::erase_if(changed_, [this](std::uint32_t index) { return index >= boxes_.size(); });
+      return;
+    }
+    is_changed_.assign(boxes_.size(), 0);
+    for (const std::uint32_t index : changed_) {
+      if (index < is_changed_.size()) is_changed_[index] = 1;
+    }
+    changed_.resize(is_changed_.size() + 1);  // written before it is known whether it counts
+    std::size_t count = 0;
+    for (std::size_t index = 0; index < is_changed_.size(); ++index) {
+      changed_[count] = static_cast<std::uint32_t>(index);
+      count += is_changed_[index];
+    }
+    changed_.resize(count);
   }
 
   /// Returns whether a layer gained its first possible partner, or lost its last one, or a body has
@@ -265,12 +286,13 @@ class CompactingAdapter final : public BroadPhase {
   std::vector<std::uint32_t> activated_;         ///< bodies newly active in this frame
 
   std::optional<WorldLattice> worlds_;
-  std::vector<Aabb> boxes_;              ///< of the active bodies, unordered
-  std::vector<Aabb> true_boxes_;         ///< the same, untranslated; empty if no box is translated
-  std::vector<std::uint32_t> bodies_;    ///< body id, by index
-  std::vector<std::uint32_t> index_of_;  ///< index by body id; kAbsent: inactive
-  std::vector<std::uint32_t> changed_;   ///< indices with changed boxes in this frame, ascending
-  std::vector<PairBuffer> pairs_;        ///< one buffer per run of the algorithm's answer
+  std::vector<Aabb> boxes_;               ///< of the active bodies, unordered
+  std::vector<Aabb> true_boxes_;          ///< the same, untranslated; empty if no box is translated
+  std::vector<std::uint32_t> bodies_;     ///< body id, by index
+  std::vector<std::uint32_t> index_of_;   ///< index by body id; kAbsent: inactive
+  std::vector<std::uint32_t> changed_;    ///< indices with changed boxes in this frame, ascending
+  std::vector<std::uint8_t> is_changed_;  ///< by index, for sortChanged()
+  std::vector<PairBuffer> pairs_;         ///< one buffer per run of the algorithm's answer
   std::vector<PairRun> runs_;
 };
 
