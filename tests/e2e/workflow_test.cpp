@@ -7,7 +7,7 @@ namespace broadmark::tests {
 namespace {
 
 /// A line of YAML: "key: value", possibly the first one of a list item.
-struct Line {
+struct YamlLine {
   std::size_t indent = 0;  ///< of the key
   bool begins_item = false;
   std::string key;
@@ -15,8 +15,8 @@ struct Line {
 };
 
 /// Parses a line of a block mapping; fails the test for anything else.
-Line lineOf(const std::string& text) {
-  Line line;
+YamlLine lineOf(const std::string& text) {
+  YamlLine line;
   line.indent = text.find_first_not_of(' ');
   line.begins_item = text.compare(line.indent, 2, "- ") == 0;
   if (line.begins_item) line.indent += 2;
@@ -30,11 +30,11 @@ Line lineOf(const std::string& text) {
   return line;
 }
 
-using Step = std::map<std::string, std::string>;
+using WorkflowStep = std::map<std::string, std::string>;
 
 /// The steps of the workflow's job, with a block ("|") as its text. Nested keys are "with.path".
-std::vector<Step> stepsOf(const std::string& text) {
-  std::vector<Step> steps;
+std::vector<WorkflowStep> stepsOf(const std::string& text) {
+  std::vector<WorkflowStep> steps;
   const std::vector<std::string> lines = linesOf(text);
   bool is_inside = false;
   std::size_t indent = 0;
@@ -42,7 +42,7 @@ std::vector<Step> stepsOf(const std::string& text) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     EXPECT_EQ(lines[i].find('\t'), std::string::npos) << "YAML has no tabs";
     if (lines[i].empty() || lines[i].starts_with('#')) continue;
-    Line line = lineOf(lines[i]);
+    YamlLine line = lineOf(lines[i]);
     if (!is_inside) {
       is_inside = line.key == "steps";
       continue;
@@ -87,7 +87,7 @@ class Workflow : public EndToEnd {
 
 TEST_F(Workflow, RunsStepByStep) {
   std::size_t commands = 0;
-  for (const Step& step : stepsOf(text_)) {
+  for (const WorkflowStep& step : stepsOf(text_)) {
     SCOPED_TRACE(step.at("name"));
     ASSERT_NE(step.contains("run"), step.contains("uses"));
     if (step.contains("uses")) {
