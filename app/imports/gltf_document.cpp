@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "broadmark/files.h"
+#include "imports/contents.h"
 
 namespace broadmark::imports::gltf {
 namespace {
@@ -32,7 +33,7 @@ bool isSupported(std::string_view name) {
 }  // namespace
 
 std::string readBytes(const fs::path& path) {
-  const FileDescriptor file = openForReading(path);
+  const FileDescriptor file = openContents(path);
   struct stat status {};
   const bool known = ::fstat(file.get(), &status) == 0;
   std::string bytes(known ? static_cast<std::size_t>(status.st_size) : 0, '\0');
