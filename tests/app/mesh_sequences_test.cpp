@@ -14,7 +14,6 @@
 namespace broadmark::tests {
 namespace {
 
-using imports::Point;
 using imports::readObj;
 using imports::readPly;
 using imports::readStl;
@@ -128,7 +127,8 @@ TEST_F(MeshSequences, PolygonsThatDeformAreCutAlike) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-  const std::array<Point, 5> corners = {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 3, 0}, {0, 2, 0}}};
+  const std::array<imports::Point, 5> corners = {
+      {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 3, 0}, {0, 2, 0}}};
   for (std::size_t frame = 0; frame < 5; ++frame) {
     std::string rows;
     for (std::size_t i = 0; i < 5; ++i) {
@@ -165,7 +165,7 @@ TEST_F(MeshSequences, RandomMeshesAreReadAsTheyWereWritten) {
     EXPECT_EQ(from_obj.points, mesh.points) << "OBJ, seed " << seed;
     EXPECT_EQ(from_obj.topology.triangles, mesh.triangles()) << "OBJ, seed " << seed;
     EXPECT_EQ(from_obj.topology.lines, mesh.lines) << "OBJ, seed " << seed;
-    std::vector<Point> corners;
+    std::vector<imports::Point> corners;
     for (const Triangle& triangle : mesh.triangles()) {
       for (const std::uint32_t vertex : triangle) corners.push_back(mesh.points[vertex]);
     }
@@ -185,7 +185,7 @@ TEST_F(MeshSequences, RandomSequencesHaveTheBoxesOfTheirMeshes) {
     for (int frame = 0; frame < 6; ++frame) {
       chosen.push_back(random() % meshes.size());
       RandomMesh& mesh = meshes[chosen.back()];
-      for (Point& point : mesh.points) point = randomPoint(random);
+      for (imports::Point& point : mesh.points) point = randomPoint(random);
       const std::string name = fmt::format("{}/m{}", folder, frame);
       if (random() % 2 == 0) {
         write(name + ".obj", objText(mesh, random));

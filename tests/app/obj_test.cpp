@@ -9,7 +9,6 @@
 namespace broadmark::tests {
 namespace {
 
-using imports::Point;
 using imports::readObj;
 using imports::Triangle;
 using testing::AllOf;
@@ -49,8 +48,8 @@ TEST_F(ObjImports, LinesAndPointsOfObj) {
 TEST_F(ObjImports, ColoursAndWeightsOfObj) {
   const MeshContents mesh = readWith(
       readObj, "v 1 2 3 1\nv 1 2 4 0.5 0.25 1\nv 1 2 5 1 .5 .5 .5\nv 1 2 6 0.1 0.1 0.1 1\n");
-  EXPECT_THAT(mesh.points,
-              ElementsAre(Point{1, 2, 3}, Point{1, 2, 4}, Point{1, 2, 5}, Point{1, 2, 6}));
+  EXPECT_THAT(mesh.points, ElementsAre(imports::Point{1, 2, 3}, imports::Point{1, 2, 4},
+                                       imports::Point{1, 2, 5}, imports::Point{1, 2, 6}));
   EXPECT_THAT(mesh.summary.left_out, IsEmpty());
   EXPECT_THAT(readWith(readObj, "v 1 2 3 0.5\n").summary.left_out,
               ElementsAre(HasSubstr("weight")));

@@ -13,7 +13,6 @@
 namespace broadmark::tests {
 namespace {
 
-using imports::Point;
 using imports::readPly;
 using imports::Triangle;
 using testing::AllOf;
@@ -54,7 +53,7 @@ TEST_F(PlyImports, TheFirstByteOfPlyDataMayBeAny) {
         bytes.integer(10, 1);
         bytes.real(2.5F);
         const MeshContents mesh = readWith(readPly, bytes.text);
-        EXPECT_THAT(mesh.points, ElementsAre(Point{static_cast<float>(first), 10, 2.5F}));
+        EXPECT_THAT(mesh.points, ElementsAre(imports::Point{static_cast<float>(first), 10, 2.5F}));
         EXPECT_THAT(mesh.summary.left_out, IsEmpty());
         EXPECT_EQ(mesh.summary.format,
                   big_endian ? "binary PLY, big-endian" : "binary PLY, little-endian");
@@ -107,8 +106,8 @@ TEST_F(PlyImports, PlyElementsMayBeInAnyOrder) {
       "2 1.5 nan 7\r\n0 3 0 1 2 255\r\n1 inf 4 0 1 2 3 255\r\n\r\n"
       "nan 1 2 0 3\r\n0 4 5 2 9 9 6\r\n0 7 8 1\r\n0 9\r\n0 1e-320 0.1 0 -5\r\n";
   const MeshContents mesh = readWith(readPly, text);
-  EXPECT_THAT(mesh.points,
-              ElementsAre(Point{2, 3, 1}, Point{5, 6, 4}, Point{8, 9, 7}, Point{0.1F, -5, 0}));
+  EXPECT_THAT(mesh.points, ElementsAre(imports::Point{2, 3, 1}, imports::Point{5, 6, 4},
+                                       imports::Point{8, 9, 7}, imports::Point{0.1F, -5, 0}));
   EXPECT_THAT(mesh.topology.triangles,
               ElementsAre(Triangle{0, 1, 2}, Triangle{0, 1, 2}, Triangle{0, 2, 3}));
   EXPECT_THAT(mesh.summary.left_out, ElementsAre("element 'camera'", "element 'nothing'"));
@@ -123,7 +122,7 @@ TEST_F(PlyImports, DoublesOfPlyAreRoundedToTheNearest) {
       "property double y\nproperty double z\nend_header\n";
   for (const double value : {above, below, 16777217.0}) bytes.real(value);
   const MeshContents mesh = readWith(readPly, bytes.text);
-  EXPECT_THAT(mesh.points, ElementsAre(Point{1 + 0x1p-23F, 1, 16777216}));
+  EXPECT_THAT(mesh.points, ElementsAre(imports::Point{1 + 0x1p-23F, 1, 16777216}));
   EXPECT_THAT(mesh.summary.used, ElementsAre(HasSubstr("rounded")));
 }
 

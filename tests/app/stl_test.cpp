@@ -12,7 +12,6 @@
 namespace broadmark::tests {
 namespace {
 
-using imports::Point;
 using imports::readStl;
 using imports::Triangle;
 using testing::AllOf;
@@ -41,7 +40,7 @@ TEST_F(StlImports, TextOfStlIsReadHoweverItBegins) {
         "solid\n" + kFacets + "endsolid\n\n \n", "solid solid facet\n" + kFacets + "\t endsolid"}) {
     const MeshContents mesh = readWith(readStl, text);
     ASSERT_THAT(mesh.points, SizeIs(6)) << text;
-    EXPECT_EQ(mesh.points[5], (Point{0, 1, 0}));
+    EXPECT_EQ(mesh.points[5], (imports::Point{0, 1, 0}));
     EXPECT_THAT(mesh.topology.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 4, 5}));
     EXPECT_THAT(mesh.summary.left_out, IsEmpty());
     EXPECT_EQ(mesh.summary.format, "ascii STL");
@@ -58,7 +57,7 @@ TEST_F(StlImports, BytesOfStlAreReadHoweverTheyBegin) {
     const std::string plain = stlBytes(header, 3);
     const MeshContents mesh = readWith(readStl, plain);
     ASSERT_THAT(mesh.points, SizeIs(9)) << header;
-    EXPECT_EQ(mesh.points[8], (Point{0, 1, 2}));
+    EXPECT_EQ(mesh.points[8], (imports::Point{0, 1, 2}));
     EXPECT_THAT(mesh.summary.left_out, IsEmpty());
     EXPECT_EQ(mesh.summary.format, "binary STL");
   }
