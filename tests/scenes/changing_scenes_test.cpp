@@ -134,8 +134,9 @@ TEST(ShooterScene, ProjectilesCollideWithTheLevelAloneForThreeFrames) {
   for (const std::uint32_t id : bodiesIn(simulation->scene(), 2)) {
     int unarmed_frames = 0;
     for (std::size_t i = 1; i < frames.size(); ++i) {
-      const bool appears = isEmpty(frames[i - 1][id]) && !isEmpty(frames[i][id]);
-      if (appears) EXPECT_EQ(layers[i][id], 4) << id << " in frame " << i;
+      if (isEmpty(frames[i - 1][id]) && !isEmpty(frames[i][id])) {
+        EXPECT_EQ(layers[i][id], 4) << id << " in frame " << i;
+      }
       if (layers[i][id] == 2 && unarmed_frames > 0) {
         EXPECT_EQ(unarmed_frames, 3) << id << " in frame " << i;
         ++armed;
