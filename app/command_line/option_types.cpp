@@ -407,7 +407,9 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
       return parameterValues(options).at(key);
     };
     added.push_back(addValue(app, name, type, set, get, doc));
-    if (choice) suggestValues(added.back(), std::get<Choice*>(parameter.value)->options);
+    if (Choice* const* choice = std::get_if<Choice*>(&parameter.value)) {
+      suggestValues(added.back(), (*choice)->options);
+    }
   });
   return added;
 }

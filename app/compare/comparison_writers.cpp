@@ -141,15 +141,6 @@ bool isSkipped(const CaseComparison& compared) {
          compared.verdict == Verdict::other_recording || compared.verdict == Verdict::not_timed;
 }
 
-/// The verdict with its reason, and the times with their ratio.
-std::string detailText(const CaseComparison& compared) {
-  std::string text = verdictText(compared);
-  if (!compared.reason.empty()) text += ": " + compared.reason;
-  if (!compared.ratio) return text;
-  const std::vector<std::string> times = timeCells(compared);
-  return text + fmt::format(": B/A {} ({}), {} -> {}", times[2], times[3], times[0], times[1]);
-}
-
 std::string testCase(const Comparison& comparison, const CaseComparison& compared) {
   const std::string verdict = escapedForXml(messageText(compared));
   std::string text =
