@@ -333,8 +333,9 @@ TEST(FrameProvider, KeepsTheFiltersOfALiveSimulation) {
   const auto known = fountain();
   recordAll(*known, [&](const Frame& frame) { filters.push_back(*frame.filter); });
   ASSERT_NE(filters.back(), filters.front());
-  for (const bool swept : {false, true}) {
-    FrameProvider provider(fountain(), swept);
+  for (const ParameterValues& reading :
+       {ParameterValues(), ParameterValues{{"swept", "on"}}, ParameterValues{{"widen", "1"}}}) {
+    FrameProvider provider(fountain(), reading);
     while (provider.lastAvailable() < 60) provider.simulateNext();
     const std::unique_ptr<IndexedFrames> opened = provider.opener()(60);
     for (const std::uint32_t index : {60, 3, 59, 30, 0}) {
