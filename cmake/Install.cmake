@@ -1,16 +1,17 @@
 # Installs and exports the program and the libraries: find_package(broadmark) provides
 # broadmark::engine, broadmark::algorithms and broadmark::scenes, and the program for plug-ins to link
-# to. Its component broadphase, which can be installed alone, provides broadmark::broadphase and
-# broadmark::broadphase_static.
+# to. Its component plugin needs nothing but a compiler. Its component broadphase, which can be installed
+# alone, provides broadmark::broadphase and broadmark::broadphase_static.
 include(CMakePackageConfigHelpers)
 
 set(installed broadmark_engine broadmark_core broadmark_statistics broadmark_recordings broadmark_harness
   broadmark_algorithms)
 if(BROADMARK_APP)
-  list(APPEND installed broadmark_scenes broadmark)
+  list(APPEND installed broadmark_scenes)
+  install(TARGETS broadmark EXPORT broadmark_program_targets
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 install(TARGETS ${installed} EXPORT broadmark_targets
-  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
@@ -32,6 +33,10 @@ list(TRANSFORM dependencies APPEND .cmake)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/broadmark)
 install(EXPORT broadmark_targets NAMESPACE broadmark:: DESTINATION ${package_dir})
+if(BROADMARK_APP)
+  install(EXPORT broadmark_program_targets NAMESPACE broadmark:: FILE program_targets.cmake
+    DESTINATION ${package_dir})
+endif()
 configure_package_config_file(cmake/broadmarkConfig.cmake.in
   ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake INSTALL_DESTINATION ${package_dir})
 install(TARGETS broadmark_broadphase_shared broadmark_broadphase_static
@@ -51,7 +56,11 @@ install(FILES ${PROJECT_BINARY_DIR}/broadmark-broadphase.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT broadphase)
 set(library_documents ${CMAKE_INSTALL_DATADIR}/doc/libbroadmark-broadphase-dev)
 install(FILES LICENSE DESTINATION ${library_documents} RENAME copyright COMPONENT broadphase)
-install(FILES docs/embedding.md DESTINATION ${library_documents} COMPONENT broadphase)
+file(READ docs/embedding.md embedding)  # without the links, which lead out of the package
+string(REGEX REPLACE "\\[([^]]*)\\]\\([^)]*\\)" "\\1" embedding "${embedding}")
+file(WRITE ${PROJECT_BINARY_DIR}/embedding.md "${embedding}")
+install(FILES ${PROJECT_BINARY_DIR}/embedding.md DESTINATION ${library_documents}
+  COMPONENT broadphase)
 install(DIRECTORY broadphase/examples DESTINATION ${library_documents} COMPONENT broadphase)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
@@ -87,4 +96,5 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY assets/scenes assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
 install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/python
   PATTERN .ipynb_checkpoints EXCLUDE)
+install(DIRECTORY broadphase/examples broadphase/include DESTINATION ${CMAKE_INSTALL_DOCDIR}/broadphase)
 install(FILES scripts/packages.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/scripts)

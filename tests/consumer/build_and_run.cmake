@@ -21,9 +21,13 @@ run(${CMAKE_COMMAND} -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
   "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DCMAKE_CXX_COMPILER=${COMPILER}")
 run(${CMAKE_COMMAND} --build "${WORK_DIR}/build")
 run("${WORK_DIR}/build/my_broad_phase")
+run(${CMAKE_COMMAND} -S "${SOURCE_DIR}/plugins" -B "${WORK_DIR}/plugins"
+  "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DCMAKE_CXX_COMPILER=${COMPILER}"
+  -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)
+run(${CMAKE_COMMAND} --build "${WORK_DIR}/plugins")
 run("${WORK_DIR}/prefix/bin/broadmark" --version)
 run("${WORK_DIR}/prefix/bin/broadmark" --headless brownian --objects 50 --frames 5 --quiet
-  --plugin "${WORK_DIR}/build/libmy_plugin.so" --plugin "${WORK_DIR}/build/libmy_engine.so"
+  --plugin "${WORK_DIR}/plugins/libmy_plugin.so" --plugin "${WORK_DIR}/plugins/libmy_engine.so"
   --engine drift --algorithm Mine --threads 3
   --json "${WORK_DIR}/results.json")
 
