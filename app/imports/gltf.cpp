@@ -76,7 +76,7 @@ class Scene {
   Scene(const std::filesystem::path& file, const ReadingOptions& options, ImportSummary& summary,
         std::uint64_t spare_bytes)
       : document_(file, spare_bytes, summary), options_(options), summary_(summary) {
-    note(summary_.used, "units: m");
+    summary_.units = "m";
     readNodes();
     order_ = withDescendants(roots_);
     requireNoCycle();

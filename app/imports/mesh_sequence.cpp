@@ -66,6 +66,8 @@ void MeshSequence::readFile(const fs::path& file, const ReadingOptions& options,
   if (summary.format.find(of_file.format) == std::string::npos) {
     summary.format += (summary.format.empty() ? "" : "; ") + of_file.format;
   }
+  if (!of_file.units.empty()) summary.units = of_file.units;
+  addNotes(summary.warnings, of_file.warnings);
   addNotes(summary.used, of_file.used);
   addNotes(summary.left_out, of_file.left_out);
   const std::size_t index = addMesh(std::move(mesh), file);
