@@ -422,7 +422,8 @@ TEST_F(GltfImports, OneSceneIsShown) {
   file.json["scene"] = 1;
   EXPECT_THAT(xs(), ElementsAre(10, 0));
   const ImportSummary summary = contents(file).summary;
-  EXPECT_THAT(summary.used, ElementsAre("units: m", "scene 'other'", "2 meshes at 2 nodes"));
+  EXPECT_EQ(summary.units, "m");
+  EXPECT_THAT(summary.used, ElementsAre("scene 'other'", "2 meshes at 2 nodes"));
   EXPECT_THAT(summary.left_out, ElementsAre("scene 0", "1 node with a mesh, outside of the scene"));
   file.json["scenes"][1]["nodes"] = Json::array();
   EXPECT_THAT(refusal(file), HasSubstr("no vertices"));
