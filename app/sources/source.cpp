@@ -258,7 +258,8 @@ void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& en
     const auto uses = [key = name, wanted = value](const PlanEntry& entry) {
       const ParameterValues& reading = entry.source.reference.reading;
       const auto stated = reading.find(key);
-      return stated != reading.end() && stated->second == wanted;
+      if (stated != reading.end()) return stated->second == wanted;
+      return entry.source.imported && (key == "format" || key == "strict");
     };
     if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(
