@@ -93,7 +93,7 @@ include(cmake/Copyright.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md LICENSE
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY assets/scenes assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
+install(DIRECTORY assets/scenes assets/pictures assets/workflows DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
 install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/python
   PATTERN .ipynb_checkpoints EXCLUDE)
 install(DIRECTORY broadphase/examples broadphase/include DESTINATION ${CMAKE_INSTALL_DOCDIR}/broadphase)

@@ -56,6 +56,17 @@ std::string closingText(std::size_t width) {
   return text + '\n' + wrapped(closing, 0, 0, width) + '\n';
 }
 
+/// The version, the build, and the versions of its libraries: a package per line.
+std::string verboseVersion() {
+  constexpr const char* kLibraries =
+#include "library_versions.inc"
+      ;
+  const Environment environment = thisEnvironment();
+  return fmt::format("{}\ncompiler: {} {}\nbuild type: {}\nlibraries:{}", environment.version,
+                     environment.compiler, environment.compiler_flags, environment.build_type,
+                     kLibraries);
+}
+
 std::vector<Command> allCommands() {
   return {
 #define COMMAND(name) commands::name::command(),
@@ -127,7 +138,10 @@ class CommandLine {
       if (command.internal) added->group("");
     }
     app_.set_help_all_flag("--help-all", "print the help of all commands");
-    app_.set_version_flag("--version", thisEnvironment().version, "print the version");
+    CLI::Option* verbose = app_.add_flag(
+        "--verbose", verbose_, "with --version: also print compiler and versions of libraries");
+    const auto version = [this] { return verbose_ ? verboseVersion() : thisEnvironment().version; };
+    verbose->needs(app_.set_version_flag("--version", version, "print the version"));
   }
 
   /// Parses a command line. Returns the requested help; nothing if there is a command to run.
@@ -212,6 +226,7 @@ class CommandLine {
     }
   }
 
+  bool verbose_ = false;
   CLI::App app_{"Broadmark tests, compares and validates broad-phase collision detection.",
                 "broadmark"};
   SessionParser session_{app_};

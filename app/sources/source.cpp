@@ -172,9 +172,7 @@ bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(n
 OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
   NamedSource source(name);
   OpenedSource opened = openAny(source, options);
-  for (PlanEntry& entry : opened.entries) {
-    if (!entry.known) adaptBoxes(entry.source, options.reading);  // a result states its own
-  }
+  for (PlanEntry& entry : opened.entries) adaptBoxes(entry.source, options.reading);
   return opened;
 }
 
@@ -255,11 +253,9 @@ std::string importText(const Source& source) {
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
   for (const auto& [name, value] : options.changed()) {
-    const auto uses = [key = name, wanted = value](const PlanEntry& entry) {
-      const ParameterValues& reading = entry.source.reference.reading;
-      const auto stated = reading.find(key);
-      if (stated != reading.end()) return stated->second == wanted;
-      return entry.source.imported && (key == "format" || key == "strict");
+    const auto uses = [key = name](const PlanEntry& entry) {
+      return entry.source.reference.reading.contains(key) ||
+             (entry.source.imported && (key == "format" || key == "strict"));
     };
     if (entries.empty() || std::ranges::any_of(entries, uses)) continue;
     throw InputError(

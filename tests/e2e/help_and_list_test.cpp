@@ -59,6 +59,8 @@ TEST_F(Help, OfAllHasThatOfEveryCommand) {
 }
 
 TEST_F(Help, Version) {
+  EXPECT_THAT(run({"--version", "--verbose"}).out, HasSubstr("\n  libbullet-dev "));
+  expectRefusal({"--verbose"}, {"--verbose", "--version"});
   const ProgramResult ended = run({"--version"});
   expectWords(ended, {"."});
   EXPECT_EQ(linesOf(ended.out).size(), 1U);

@@ -98,7 +98,8 @@ TEST_F(Import, AnySourceCanBeWidened) {
   EXPECT_THAT(pairs_at("0.99"), ElementsAre(0, 0));
   EXPECT_THAT(pairs_at("1"), ElementsAre(1, 1));
   EXPECT_THAT(pairs_at("2"), ElementsAre(2, 1));
-  EXPECT_THAT(pairs_at("1e30", {"--answer", "events", "--threads", "2"}), ElementsAre(3, 1));
+  // One pair at first; then two begin, and as many end.
+  EXPECT_THAT(pairs_at("1e30", {"--answer", "events", "--threads", "2"}), ElementsAre(2, 2));
 
   const Json result = readJson(file("w.json"))["cases"][0];
   EXPECT_EQ(result["recording"]["reading"], Json::parse(R"({"widen": "1e+30"})"));
@@ -106,10 +107,6 @@ TEST_F(Import, AnySourceCanBeWidened) {
   EXPECT_THAT(result["id"].get<std::string>(), HasSubstr("boxes widened/Boxes/N3/F2/widen=1e+30/"));
   runQuietly({"--headless", "w.json", "--case", result["id"], "--json", "again.json"});
   EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], result["recording"]);
-
-  runQuietly({"--headless", "w.json", "--case", result["id"], "--widen", "1e30", "--json", "-"});
-  expectRefusal({"--headless", "w.json", "--quiet", "--case", result["id"], "--widen", "2"},
-                {"--widen"});
 
   // Imported so, they are boxes like any others; and so are those of scenes.
   EXPECT_EQ(run({"import", "boxes.csv", "--widen", "1", "-o", "wide"}).status, 0);
