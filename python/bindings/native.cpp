@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -89,13 +90,20 @@ bool isInterrupted() {
   return PyErr_CheckSignals() != 0;
 }
 
+/// What a worker process may take: as much as this process by its own limit.
+std::uint64_t memoryOfWorkers() {
+  rlimit own{};
+  if (::getrlimit(RLIMIT_DATA, &own) != 0) return machineMemory();
+  return std::min<std::uint64_t>(machineMemory(), own.rlim_cur);
+}
+
 /// Runs the case in this process, unless its library might end that.
 ExecutorFactory executorsFor(const Algorithm& algorithm, const std::string& program) {
   if (!algorithm.traits.library_aborts) return makeInProcessExecutor;
   return [program](const Case& test_case, CancelQuery cancelled) {
     return makeWorkerProcess(test_case, {.command = {program, "worker"},
                                          .hard_limit = std::chrono::years(100),
-                                         .memory_limit_bytes = machineMemory(),
+                                         .memory_limit_bytes = memoryOfWorkers(),
                                          .cancelled = std::move(cancelled)});
   };
 }

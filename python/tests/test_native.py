@@ -90,7 +90,7 @@ MEMORY_ENDS = """
 import re, resource, sys
 sys.path.insert(0, {package!r})
 import numpy, broadmark
-boxes = numpy.zeros((30_000, 2, 3), numpy.float32)
+boxes = numpy.zeros((20_000, 2, 3), numpy.float32)
 broadmark.overlaps(boxes[:9], {algorithm!r}, threads=1)
 used = int(re.search(r"VmData:\\s*(\\d+)", open("/proc/self/status").read())[1]) * 1024
 hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
@@ -103,7 +103,7 @@ assert broadmark.overlaps(boxes[:3], {algorithm!r}, threads=1).shape == (3, 2)
 """
 
 
-@pytest.mark.parametrize("algorithm", ["axis-sweep", "dbvt-f", "dbvt-d", "ode-hash", "sap", "kd"])
+@pytest.mark.parametrize("algorithm", ["axis-sweep", "dbvt-f", "ode-hash", "kd"])
 def test_the_interpreter_survives_the_end_of_memory(algorithm: str) -> None:
     if algorithm not in _native().algorithms():
         pytest.skip(f"no {algorithm} in this build")
