@@ -218,7 +218,7 @@ std::vector<CaseColumn> times() {
     if (phase == Phase::total) continue;  // covered by seconds_per_frame
     columns.push_back(computed(fmt::format("{}_seconds", name), name,
                                {fmt::format("frames/{}", name), JsonForm::seconds, true},
-                               [phase = phase](R r) { return r.meanSeconds(phase); },
+                               [phase](R r) { return r.meanSeconds(phase); },
                                {.particular = true}));
   }
   return columns;
@@ -254,7 +254,7 @@ std::vector<CaseColumn> counts() {
   for (const auto& [counter, name] : kProcessorCounters.entries) {
     columns.push_back(computed(fmt::format("{}_per_frame", name), "",
                                {fmt::format("processor/{}", name), JsonForm::per_frame, true},
-                               [counter = counter](R r) { return r.perFrame(counter); },
+                               [counter](R r) { return r.perFrame(counter); },
                                {.particular = true}));
   }
   return columns;

@@ -96,7 +96,7 @@ Json frameCountsToJson(const std::vector<FrameCounts>& frames) {
   Json json = arraysOf(kFrameCounts, frames.size(), get);
   for (const auto& [which, name] : kFrameCounts.entries) {
     const bool always = which == FrameCount::pairs || which == FrameCount::changed_bodies;
-    const auto counted = [which = which](const FrameCounts& frame) { return frame[which] != 0; };
+    const auto counted = [which](const FrameCounts& frame) { return frame[which] != 0; };
     if (!always && std::ranges::none_of(frames, counted)) json.erase(std::string(name));
   }
   return json;

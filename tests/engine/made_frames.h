@@ -11,12 +11,11 @@
 
 namespace broadmark::tests {
 
-using Boxes = std::vector<Aabb>;
-
 /// Frames in memory, with or without a list of changed bodies.
 class MadeFrames final : public IndexedFrames {
  public:
-  MadeFrames(std::vector<Boxes> frames, bool lists_changed) : frames_(std::move(frames)) {
+  MadeFrames(std::vector<std::vector<Aabb>> frames, bool lists_changed)
+      : frames_(std::move(frames)) {
     scene_.name = "Made";
     scene_.objects = static_cast<std::uint32_t>(frames_.front().size());
     scene_.frames = static_cast<std::uint32_t>(frames_.size() - 1);
@@ -41,8 +40,8 @@ class MadeFrames final : public IndexedFrames {
   }
 
   SceneInfo scene_;
-  std::vector<Boxes> frames_;
-  Boxes now_;
+  std::vector<std::vector<Aabb>> frames_;
+  std::vector<Aabb> now_;
   std::optional<std::vector<std::uint32_t>> changed_;
 };
 

@@ -387,7 +387,7 @@ TEST(ResultsJson, WhatIsNoResultsFile) {
       {R"({"schema": "broadmark-scene/1"})", "not a results file"},
       {R"({"schema": "broadmark-results/2"})", "'options' is missing"}};
   for (const auto& [text, fault] : texts) {
-    EXPECT_THAT(inputErrorOf([text = text] { parseResults(text, "a.json"); }),
+    EXPECT_THAT(inputErrorOf([text] { parseResults(text, "a.json"); }),
                 AllOf(StartsWith("a.json: "), HasSubstr(fault), testing::Not(HasSubstr("\n"))));
   }
   const std::string deep(100'000, '[');
