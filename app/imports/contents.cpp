@@ -131,11 +131,15 @@ FileStart startOf(const fs::path& path) {
   const FileDescriptor file = openRaw(path);
   FileStart start{.path = path, .text = std::string(kChunkBytes, '\0')};
   std::size_t got = 0;
+  start.size = fs::file_size(fmt::format("/proc/self/fd/{}", file.get()));
   if (isGzip(file)) {
     got = GzipReader(file, path).read(start.text);
+    // The file ends with its uncompressed size, if that is below 4 GiB and it has one part.
+    std::array<std::uint8_t, 4> size{};
+    readAll(file.get(), std::as_writable_bytes(std::span(size)), start.size - size.size());
+    start.size = size[0] | size[1] << 8 | size[2] << 16 | std::uint64_t{size[3]} << 24;
   } else {
     got = readAll(file.get(), std::as_writable_bytes(std::span(start.text)), 0);
-    start.size = fs::file_size(fmt::format("/proc/self/fd/{}", file.get()));
   }
   start.whole = got < start.text.size();
   start.text.resize(got);

@@ -21,7 +21,7 @@ struct FileStart {
   std::filesystem::path path;
   std::string text;        ///< uncompressed, without a byte order mark, at most 64 KiB
   bool whole = false;      ///< whether `text` is all of the file
-  std::uint64_t size = 0;  ///< of the file in bytes; 0 if it is compressed
+  std::uint64_t size = 0;  ///< of the file in bytes, uncompressed
 };
 /// Throws InputError.
 FileStart startOf(const std::filesystem::path&);

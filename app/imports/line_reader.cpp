@@ -98,6 +98,12 @@ bool LineReader::next() {
   ++number_;
   line_ = std::string_view(buffer_).substr(begin, end - begin);
   while (line_.ends_with('\r')) line_.remove_suffix(1);
+  // A file pasted together may have other line ends, too.
+  const char other = line_end_ == '\n' ? '\r' : '\n';
+  if (const std::size_t found = line_.find(other); found != std::string_view::npos) {
+    length_ = found + 1;
+    line_ = line_.substr(0, found);
+  }
   return true;
 }
 
@@ -135,10 +141,14 @@ double LineReader::realNumber(std::string_view text, std::string_view what) cons
 
 std::int64_t LineReader::integer(std::string_view text, std::string_view what) const {
   std::int64_t number = 0;
-  if (!parseInteger(text, number)) {
+  if (parseInteger(text, number)) return number;
+  // Programs whose tables hold floats write "3.0" or "3e+00".
+  constexpr double kMaxExact = 1LL << 53;
+  double real = 0;
+  if (!parseReal(text, real) || !(std::abs(real) <= kMaxExact) || real != std::floor(real)) {
     fail(fmt::format("{} is {}: an integer is expected", what, quoted(text)));
   }
-  return number;
+  return static_cast<std::int64_t>(real);
 }
 
 bool parseReal(std::string_view text, double& number) {

@@ -20,8 +20,7 @@ class LineReader {
  public:
   explicit LineReader(const std::filesystem::path& path);
 
-  /// Reads the next line, without its end: LF, CR LF, or CR in a file that has only these. Returns
-  /// false at the end of the file.
+  /// Reads the next line, without its end: LF, CR LF or CR. Returns false at the end of the file.
   bool next();
   /// Like next(), but throws at the end of the file, stating what is `expected`.
   void require(std::string_view expected);

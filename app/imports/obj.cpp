@@ -38,6 +38,9 @@ class ObjReader {
         leaveOut();
       }
     }
+    if (max_number_ > static_cast<std::int64_t>(points.size())) {
+      lines_.fail(max_line_, noVertex(max_number_));
+    }
     mesh.vertices = static_cast<std::uint32_t>(points.size());
   }
 
@@ -103,10 +106,16 @@ class ObjReader {
     const auto count = static_cast<std::int64_t>(points.size());
     const std::int64_t number = lines_.integer(corner.substr(0, corner.find('/')), "a vertex");
     const std::int64_t index = number < 0 ? count + number : number - 1;
-    if (index < 0 || index >= count) {
-      lines_.fail(fmt::format("no vertex {}: there are {} up to here", number, count));
+    if (index < 0 || index >= MeshTopology::kMaxVertices) lines_.fail(noVertex(number));
+    if (number > max_number_) {  // the vertex may follow
+      max_number_ = number;
+      max_line_ = lines_.number();
     }
     return static_cast<std::uint32_t>(index);
+  }
+  [[nodiscard]] std::string noVertex(std::int64_t number) const {
+    return fmt::format("no vertex {}: there are {}{}", number, points.size(),
+                       number < 0 ? " up to here" : "");
   }
 
   /// Notes a statement that is not used: of a curve or a surface, or unknown. A word that is none
@@ -129,6 +138,8 @@ class ObjReader {
   std::string line_;
   std::vector<std::string_view> words_;
   std::vector<std::uint32_t> vertices_;  ///< of the current statement
+  std::int64_t max_number_ = 0;          ///< highest vertex number
+  std::uint64_t max_line_ = 0;           ///< its line
 };
 
 }  // namespace

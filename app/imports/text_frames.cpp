@@ -158,6 +158,10 @@ class TextFrames final : public IndexedFrames {
   }
 
   void addLayer(const LineReader& lines, const TextRow& row) {
+    if (has_layers_.value_or(row.layer.has_value()) != row.layer.has_value()) {
+      lines.fail(row.line, "only some files have layers: all or none are expected");
+    }
+    has_layers_ = row.layer.has_value();
     if (!row.layer) return;
     const auto known = layers_.try_emplace(row.id, *row.layer).first;
     if (known->second == *row.layer) return;
@@ -219,7 +223,8 @@ class TextFrames final : public IndexedFrames {
   std::optional<std::int64_t> last_number_;  ///< of the previous frame
   std::optional<double> last_time_;
   bool has_ids_ = true;
-  std::unordered_map<std::int64_t, std::uint8_t> layers_;  ///< by id, if they are stated
+  std::optional<bool> has_layers_;                         ///< once there is a row
+  std::unordered_map<std::int64_t, std::uint8_t> layers_;  ///< by id
   std::vector<Aabb> boxes_;
 };
 
@@ -258,9 +263,8 @@ void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = lines.realNumber(words[columns.position[axis]], "a coordinate");
       double edges = columns.is_scaled ? value : 0;
-      if (columns.images) {
-        edges +=
-            static_cast<double>(lines.integer(words[(*columns.images)[axis]], "an image flag"));
+      if (const auto image = columns.images[axis]) {
+        edges += static_cast<double>(lines.integer(words[*image], "an image flag"));
       }
       if (!columns.is_scaled) centre[axis] += value;
       for (std::size_t k = 0; k < 3; ++k) centre[k] += edges * cell.edges[axis][k];

@@ -76,8 +76,8 @@ struct ParticleColumns {
   std::string_view no_radius;  ///< error message if neither the file nor the user states a radius
   std::array<std::size_t, 3> position{};
   bool is_scaled = false;  ///< whether positions are multiples of the cell's edges
-  /// How often a particle has left the cell across each of its faces.
-  std::optional<std::array<std::size_t, 3>> images = {};
+  /// How often a particle has left the cell along each of its edges, where that is stated.
+  std::array<std::optional<std::size_t>, 3> images = {};
   std::optional<std::size_t> id = {};
   std::optional<std::size_t> radius = {};
   bool is_diameter = false;  ///< whether the column `radius` holds diameters

@@ -24,6 +24,7 @@ using imports::TextRow;
 /// What a column holds: one of these, followed by an axis if it is part of a box.
 constexpr const char* kFrame = "frame";
 constexpr const char* kTime = "time";
+constexpr const char* kStep = "step";
 constexpr const char* kId = "id";
 constexpr const char* kLayer = "layer";
 constexpr std::string_view kAxes = "xyz";
@@ -34,7 +35,8 @@ struct Synonyms {
 };
 const std::vector<Synonyms> kColumns = {
     {kFrame, {"frame", "frameid", "frameno", "framenumber", "frameindex"}},
-    {kTime, {"time", "t", "timestep", "step"}},
+    {kTime, {"time", "t"}},
+    {kStep, {"step", "timestep"}},
     {kId, {"id", "body", "bodyid", "object", "objectid", "entity", "entityid", "particleid"}},
     {kLayer, {"layer", "layerid"}},
 };
@@ -74,9 +76,9 @@ char delimiterOf(std::string_view line) {
                           [&](char delimiter) { return std::ranges::count(line, delimiter); });
 }
 
-/// The letters and digits of a name, in lower case, without a unit in parentheses.
+/// The letters and digits of a name, in lower case, without a unit in parentheses or brackets.
 std::string plainName(std::string_view name) {
-  std::string plain = imports::lowered(name.substr(0, name.find('(')));
+  std::string plain = imports::lowered(name.substr(0, name.find_first_of("([")));
   std::erase_if(plain, [](char c) { return !(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9'); });
   return plain;
 }
@@ -136,7 +138,7 @@ struct Columns {
       second_column[axis] = by_meaning.at(second + kAxes[axis]);
     }
     frame = find(kFrame);
-    if (!frame) time = find(kTime);
+    if (!frame) time = find(find(kTime) ? kTime : kStep);
     id = find(kId);
     layer = find(kLayer);
   }

@@ -59,6 +59,14 @@ class ColumnNames {
     if (!std::ranges::all_of(names, is_there)) return {};
     return std::array{*use(names[0]), *use(names[1]), *use(names[2])};
   }
+  /// A name of two columns.
+  [[nodiscard]] std::optional<std::string_view> twice() const {
+    std::vector<std::string_view> sorted = names_;
+    std::ranges::sort(sorted);
+    const auto found = std::ranges::adjacent_find(sorted);
+    if (found == sorted.end()) return {};
+    return *found;
+  }
   [[nodiscard]] const std::vector<std::string_view>& used() const { return used_; }
   [[nodiscard]] std::vector<std::string_view> unused() const {
     std::vector<std::string_view> unused = names_;
@@ -82,8 +90,12 @@ void setPositions(const LineReader& lines, ColumnNames& names, const FrameHeader
     if (!found) continue;
     columns.position = *found;
     columns.is_scaled = positions.is_scaled;
-    if (positions.is_wrapped) columns.images = names.use(kImages);
-    if ((columns.is_scaled || columns.images) && !header.cell) {
+    bool has_images = false;
+    for (std::size_t axis = 0; axis < 3 && positions.is_wrapped; ++axis) {
+      columns.images[axis] = names.use(kImages[axis]);
+      has_images |= columns.images[axis].has_value();
+    }
+    if ((columns.is_scaled || has_images) && !header.cell) {
       lines.fail("scaled positions and image flags need the box: 'ITEM: BOX BOUNDS' is expected");
     }
     return;
@@ -97,6 +109,9 @@ ParticleColumns columnsOf(const LineReader& lines, ColumnNames& names, const Fra
                           .no_radius = "no column 'radius' or 'diameter': set it with --radius",
                           .id = names.use("id"),
                           .count = names.count()};
+  if (const auto twice = names.twice()) {
+    lines.fail(fmt::format("two columns {}", imports::quoted(*twice)));
+  }
   setPositions(lines, names, header, columns);
   if (radius > 0) return columns;
   columns.radius = names.use("radius");

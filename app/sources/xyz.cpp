@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <map>
+#include <set>
 
 #include "imports/text_frames.h"
 #include "sources/source.h"
@@ -29,7 +30,9 @@ Token tokenOf(std::string_view text, std::string_view ends) {
   const std::size_t bracket = kOpening.find(text.front());
   int depth = 0;
   for (std::size_t i = 0; bracket != std::string_view::npos && i < text.size(); ++i) {
-    if (i > 0 && text[i] == kClosing[bracket]) {
+    if (text[i] == '\\') {
+      ++i;  // the next character is a part of the text
+    } else if (i > 0 && text[i] == kClosing[bracket]) {
       if (--depth == 0) return {text.substr(1, i - 1), text.substr(i + 1)};
     } else if (text[i] == kOpening[bracket]) {
       ++depth;
@@ -130,6 +133,7 @@ class XyzFormat final : public imports::TextFormat {
     columns_.more = false;
     columns_.count = 0;
     bool positions = false;
+    std::set<std::string> names;
     std::vector<std::string> unused;
     for (std::size_t i = 0; i < words.size(); i += 3) {
       const std::string name = imports::lowered(words[i]);
@@ -139,12 +143,15 @@ class XyzFormat final : public imports::TextFormat {
       }
       const std::size_t column = columns_.count;
       columns_.count += static_cast<std::size_t>(width);
-      if (name == "pos" && width == 3 && !positions) {
+      if (!names.insert(name).second) {
+        lines.fail(fmt::format("Properties: {} twice", imports::quoted(words[i])));
+      }
+      if (name == "pos" && width == 3) {
         columns_.position = {column, column + 1, column + 2};
         positions = true;
-      } else if (name == "id" && width == 1 && !columns_.id) {
+      } else if (name == "id" && width == 1) {
         columns_.id = column;
-      } else if (name == "radius" && width == 1 && !columns_.radius) {
+      } else if (name == "radius" && width == 1) {
         columns_.radius = column;
       } else if (name != "species") {
         unused.emplace_back(words[i]);

@@ -30,6 +30,10 @@ TEST_F(ObjImports, CommentsAndContinuationsOfObj) {
     EXPECT_EQ(readWith(readObj, kFour + text).topology.triangles, square) << text;
   }
   EXPECT_THAT(refusal(readObj, kFour + "f 1 2 3 \\"), HasSubstr("cut short"));
+  EXPECT_EQ(readWith(readObj, "f 1 2 3 4\n" + kFour).topology.triangles, square);
+  EXPECT_THAT(refusal(readObj, "f 1 2 3\nf 1 2 5\nf 4 3 2\n" + kFour),
+              HasSubstr("line 2: no vertex 5: there are 4"));
+  EXPECT_THAT(refusal(readObj, "f -1 -2 -3\n" + kFour), HasSubstr("line 1: no vertex -1"));
 }
 
 TEST_F(ObjImports, LinesAndPointsOfObj) {

@@ -58,7 +58,7 @@ TEST_F(TextImports, LinesEndInAnyWay) {
   for (const char* text : {"a\nb\n\nc", "a\r\nb\r\n\r\nc\r\n", "a\rb\r\rc\r",
                            "\xEF\xBB\xBF"
                            "a\nb\n\nc\n",
-                           "a\r\r\nb\r\r\n\nc\n"}) {
+                           "a\r\r\nb\r\r\n\nc\n", "a\nb\r\rc\r\n", "a\rb\n\nc\n"}) {
     imports::LineReader lines(write("lines.txt", text));
     std::vector<std::string> found;
     while (lines.next()) found.emplace_back(lines.line());
@@ -137,6 +137,18 @@ TEST_F(TextImports, GzipIsUncompressed) {
   EXPECT_THAT(complaint("damaged.xyz.gz", damaged), HasSubstr("damaged.xyz.gz: cannot read: gzip"));
 }
 
+TEST_F(TextImports, ACompressedMeshIsRecognisedByItsSize) {
+  std::string stl(80, 's');
+  stl += std::string("\1\0\0\0", 4) + std::string(50, '\0');
+  EXPECT_EQ(importFrom(compress("mesh.gz", stl))->scene().objects, 1U);
+}
+
+TEST_F(TextImports, IntegersMayBeWrittenAsFloats) {
+  EXPECT_THAT(csv("0.0,3e+00,1,2,3,4,5,6\n"), ElementsAre(boxOf({1, 2, 3}, {4, 5, 6})));
+  EXPECT_THAT(complaint("a.csv", "0.5,3,1,2,3,4,5,6\n"), HasSubstr("the frame is '0.5'"));
+  EXPECT_THAT(complaint("a.csv", "0,1e17,1,2,3,4,5,6\n"), HasSubstr("the id is '1e17'"));
+}
+
 // ---- CSV.
 
 TEST_F(TextImports, CsvColumnsAreFoundByTheirNames) {
@@ -151,6 +163,7 @@ TEST_F(TextImports, CsvColumnsAreFoundByTheirNames) {
         "z\","
         "\"aabb.max.z\"",
         "frame,id,x_min (m),x_max (m),y_min (m),y_max (m),z_min (m),z_max (m)",
+        "frame,id,x_min [m],x_max [m],y_min [m],y_max [m],z_min [m],z_max [m]",
         "\xEF\xBB\xBF"
         "# frame,id,min_x,max_x,min_y,max_y,min_z,max_z",
         "# a comment\n\nframe,id,min_x,max_x,min_y,max_y,min_z,max_z\n# another"}) {
@@ -198,6 +211,10 @@ TEST_F(TextImports, CsvFramesTimesAndLayers) {
   // Steps may be apart; numbers of frames that are missing are empty frames.
   const std::string rows = "0,0,0,0,1,1,1\n100,0,0,0,1,1,1\n";
   EXPECT_EQ(read("s.csv", "step,min_x,min_y,min_z,max_x,max_y,max_z\n" + rows)->scene().frames, 1U);
+  const auto both = read("b.csv",
+                         "step,time,min_x,min_y,min_z,max_x,max_y,max_z\n"
+                         "0.1,0,0,0,0,1,1,1\n0.1,0.1,0,0,0,1,1,1\n");
+  EXPECT_EQ(both->scene().frames, 1U) << "a step may be a duration";
   EXPECT_EQ(read("f.csv", "frame,min_x,min_y,min_z,max_x,max_y,max_z\n" + rows)->scene().frames,
             100U);
 }
@@ -226,6 +243,11 @@ TEST_F(TextImports, WhatIsWrongWithColumnsOfCsv) {
   EXPECT_THAT(wrong(layered + "0,0,32,0,0,0,1,1,1\n"), HasSubstr("no layer 32"));
   EXPECT_THAT(wrong(layered + "0,0,1,0,0,0,1,1,1\n1,0,2,0,0,0,1,1,1\n"),
               HasSubstr("line 3: 0 is in layer 2, before in 1"));
+  const std::string box = "min_x,min_y,min_z,max_x,max_y,max_z\n";
+  write("some/1.csv", "id,layer," + box + "0,1,0,0,0,1,1,1\n");
+  write("some/2.csv", "id," + box + "0,0,0,0,1,1,1\n1,0,0,0,1,1,1\n");
+  EXPECT_THAT(inputErrorOf([&] { importFrom(directory_ / "some"); }),
+              HasSubstr("2.csv: line 2: only some files have layers"));
 }
 
 // ---- XYZ.
@@ -238,6 +260,7 @@ TEST_F(TextImports, KeysOfExtendedXyz) {
         "PROPERTIES = \"id:I:1:mass:R:1:pos:R:3\" energy=5",
         "free text 'quoted = text' Properties=\tid:I:1:mass:R:1:POS:R:3 pbc=\"F F F\"",
         "it's text Properties={id:I:1:mass:R:1:pos:R:3}",
+        "note=\"say \\\"x = y\\\" twice\" Properties=id:I:1:mass:R:1:pos:R:3",
         "virial=[[1, 2], [3, 4]] Properties =id:I:1:mass:R:1:pos:R:3 flag"}) {
     EXPECT_THAT(balls("a.xyz", fmt::format("2\n{}\n{}", comment, atoms)), expected) << comment;
   }
@@ -247,6 +270,7 @@ TEST_F(TextImports, KeysOfExtendedXyz) {
   EXPECT_THAT(wrong("Properties=id:I:1:mass:R:1"), HasSubstr("pos:R:3"));
   EXPECT_THAT(wrong("Properties=id:I:1:mass:R:1:pos:R"), HasSubstr("NAME:TYPE:COLUMNS"));
   EXPECT_THAT(wrong("Properties=id:I:1:pos:R:3"), HasSubstr("5 columns: 4 are expected"));
+  EXPECT_THAT(wrong("Properties=id:I:1:mass:R:1:id:I:3"), HasSubstr("'id' twice"));
   EXPECT_THAT(wrong("\"all Properties=pos:R:3 quoted\""), HasSubstr("a key of its own"));
 }
 
@@ -309,6 +333,7 @@ TEST_F(TextImports, PositionsOfLammps) {
   for (const char* atoms : {"id x y z xu yu zu\n1 1 2 3 11 2 3\n2 4 5 6 4 5 -14\n",
                             "id xsu ysu zsu x y z\n1 1.1 .2 .3 1 2 3\n2 .4 .5 -1.4 4 5 6\n",
                             "id x y z ix iy iz\n1 1 2 3 1 0 0\n2 4 5 6 0 0 -2\n",
+                            "iz ix id x y z\n0 1 1 1 2 3\n-2 0 2 4 5 6\n",
                             "id iz iy ix xs ys zs\n1 0 0 1 .1 .2 .3\n2 -2 0 0 .4 .5 .6\n"}) {
     EXPECT_THAT(balls("a.dump", dump(cube, atoms)), expected) << atoms;
   }
@@ -332,6 +357,7 @@ TEST_F(TextImports, WhatIsNotReadOfLammps) {
   EXPECT_THAT(wrong(dump("xy xz yz pp pp pp\n0 10\n0 10\n0 10", atoms)),
               HasSubstr("2 bounds of the box: 3"));
   EXPECT_THAT(wrong(dump(cube, "id x y z\n1 1 2 3 4\n2 4 5 6 7\n")), HasSubstr("5 columns: 4"));
+  EXPECT_THAT(wrong(dump(cube, "id x x y z\n1 1 1 2 3\n2 4 4 5 6\n")), HasSubstr("columns 'x'"));
   EXPECT_THAT(wrong("ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y z ix iy iz\n1 0 0 0 1 1 1\n"),
               HasSubstr("BOX BOUNDS"));
   const Source two = source("b.dump", dump(cube, atoms) + dump(cube, atoms), {{"radius", "1"}});

@@ -19,6 +19,8 @@
 namespace broadmark::tests {
 namespace {
 
+using Boxes = std::vector<Aabb>;
+
 using testing::ElementsAre;
 using testing::IsEmpty;
 
