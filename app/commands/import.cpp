@@ -39,9 +39,7 @@ fs::path outputFor(const SceneInfo& scene, fs::path path) {
 int run(const Options& options) {
   const InterruptGuard guard;
   const std::string& first = options.inputs.front();
-  if (!importOf(first, options.reading.format.value)) {
-    throw InputError(fmt::format("{}: cannot be imported; expected: {}", first, importKindsText()));
-  }
+  if (!importOf(first, options.reading.format.value)) throw notImported(first);
   Source source = fileSource(options.inputs, options.reading);
   const std::string text = importText(source);
   const std::unique_ptr<IndexedFrames> frames =

@@ -10,6 +10,7 @@
 #include <map>
 #include <ranges>
 
+#include "broadmark/json_fields.h"
 #include "imports/text_frames.h"
 #include "sources/source.h"
 
@@ -42,8 +43,8 @@ const std::vector<Synonyms> kColumns = {
 };
 /// Names of parts of a box, before or behind the axis.
 const std::vector<Synonyms> kBoxColumns = {
-    {"min_", {"min", "minimum", "mins", "lower", "low", "lo", "lb", "0"}},
-    {"max_", {"max", "maximum", "maxs", "upper", "high", "hi", "ub", "1"}},
+    {"min_", {"min", "minimum", "mins", "lower", "lowerbound", "low", "lo", "lb", "0"}},
+    {"max_", {"max", "maximum", "maxs", "upper", "upperbound", "high", "hi", "ub", "1"}},
     {"centre_", {"centre", "center", "c", "mid"}},
     {"half_", {"half", "halfextent", "halfextents", "halfsize", "halfwidth", "halflength", "h"}},
     {"size_", {"size", "fullsize", "length", "width", "dim", "dimension"}},
@@ -89,7 +90,7 @@ std::string meaningOf(std::string_view name) {
   for (const auto& [meaning, names] : kColumns) {
     if (std::ranges::find(names, plain) != names.end()) return std::string(meaning);
   }
-  for (const std::string_view prefix : {"aabb", "bbox", "bounds", "box"}) {
+  for (const std::string_view prefix : {"aabb", "boundingbox", "bbox", "bounds", "box"}) {
     if (plain.starts_with(prefix)) plain.erase(0, prefix.size());
   }
   if (plain.empty()) return {};
@@ -214,7 +215,8 @@ Columns columnsIn(const LineReader& lines, char delimiter,
       lines.fail(fmt::format("columns {} and {} hold the same",
                              imports::quoted(columns.names[same->second]), imports::quoted(name)));
     }
-    columns.names.emplace_back(name);
+    constexpr std::size_t kMaxShown = 60;
+    columns.names.push_back(onOneLine(std::string(name.substr(0, kMaxShown))));
   }
   columns.by_meaning.erase("");
   setForm(lines, columns);
@@ -263,7 +265,9 @@ class CsvFormat final : public imports::TextFormat {
     frame.has_ids = columns_.id.has_value();
     while (lines.next()) {
       const std::string_view line = lines.line();
-      if (imports::isBlank(line) || imports::trimmed(line).starts_with('#')) continue;
+      // Spreadsheets end with rows of empty cells.
+      const bool is_empty = line.find_first_not_of(" \t\",;") == std::string_view::npos;
+      if (is_empty || imports::trimmed(line).starts_with('#')) continue;
       splitCells(lines, line);
       if (!frame.rows.empty() && !isIn(lines, frame)) {
         lines.unread();

@@ -229,6 +229,21 @@ std::vector<fs::path> filesToImport(const std::vector<std::string>& names, const
 
 std::string importKindsText() { return kindsText(importKinds()); }
 
+InputError notImported(const std::string& name) {
+  const std::string file = NamedSource(name).name();
+  const auto because = [&](std::string_view reason) {
+    return InputError(fmt::format("{}: {}; expected: {}", name, reason, importKindsText()));
+  };
+  if (isSceneId(name) || isRecordingName(file)) return because("cannot be imported");
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::is_directory(status)) return because("holds no file that can be imported");
+  if (imports::expandName(file).empty()) return because("matches no file");
+  // Throws if that is the reason.
+  if (!fs::exists(status) || fs::is_regular_file(status)) static_cast<void>(openForReading(file));
+  return because("its content is of no known kind");
+}
+
 std::string importText(const Source& source) {
   if (!source.imported) return {};
   const imports::ImportSummary& summary = source.summary;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/error.h"
 #include "broadmark/harness/case.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/results/results.h"
@@ -128,6 +129,8 @@ std::vector<std::filesystem::path> filesToImport(const std::vector<std::string>&
                                                  const FileImport&, const std::string& format);
 /// Kinds of files that can be imported, for help and messages.
 std::string importKindsText();
+/// Error for a name that importOf() does not know. Throws InputError if it cannot be read.
+InputError notImported(const std::string& name);
 
 /// What was understood of imported files, in a few lines; "" for other sources.
 std::string importText(const Source&);

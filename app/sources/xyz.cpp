@@ -159,6 +159,7 @@ class XyzFormat final : public imports::TextFormat {
     }
     if (!positions) lines.fail("Properties without the positions: pos:R:3 is expected");
     const bool uses_radius = columns_.radius && radius_ == 0;
+    if (columns_.radius && !uses_radius) unused.emplace_back("radius");
     addOnce(summary_.used, fmt::format("columns {}pos{}", columns_.id ? "id, " : "",
                                        uses_radius ? ", radius" : ""));
     if (!unused.empty()) {

@@ -156,6 +156,13 @@ TEST_F(Recognition, UnknownFilesAreRefusedWithWhatIsRead) {
   std::filesystem::create_directory(directory_ / "empty");
   EXPECT_THAT(inputErrorOf([&] { openSource((directory_ / "empty").string(), {}); }),
               HasSubstr("holds no file"));
+  const auto reason = [&](const std::string& name) {
+    return inputErrorOf([&] { throw notImported((directory_ / name).string()); });
+  };
+  EXPECT_THAT(reason("empty"), AllOf(HasSubstr("holds no file"), HasSubstr(".xyz")));
+  EXPECT_THAT(reason("a.dat"), HasSubstr("no known kind"));
+  EXPECT_THAT(reason("missing.dat"), HasSubstr("No such file"));
+  EXPECT_THAT(reason("missing*.dat"), HasSubstr("matches no file"));
 }
 
 }  // namespace

@@ -158,6 +158,7 @@ TEST_F(TextImports, CsvColumnsAreFoundByTheirNames) {
        {"frame,id,min_x,max_x,min_y,max_y,min_z,max_z", "FRAME,ID,xmin,xmax,ymin,ymax,zmin,zmax",
         "Frame, Id, minX, maxX, minY, maxY, minZ, maxZ",
         "frame,id,lower_x,upper_x,lower_y,upper_y,lower_z,upper_z",
+        "frame,id,lowerBound.x,upperBound.x,lowerBound.y,upperBound.y,lowerBound.z,upperBound.z",
         "frame,id,xlo,xhi,ylo,yhi,zlo,zhi", "frame,body,x0,x1,y0,y1,z0,z1",
         "\"frame\",\"id\",\"aabb.min.x\",\"aabb.max.x\",\"aabb.min.y\",\"aabb.max.y\",\"aabb.min."
         "z\","
@@ -183,7 +184,8 @@ TEST_F(TextImports, CsvColumnsAreFoundByTheirNames) {
   EXPECT_THAT(csv("size_x,size_y,size_z,center_x,center_y,center_z\n"
                   "3,3,3,2.5,3.5,4.5\n3,3,3,8.5,9.5,10.5\n"),
               expected);
-  EXPECT_THAT(csv("min_x,min_y,min_z,size_x,size_y,size_z\n1,2,3,3,3,3\n7,8,9,3,3,3\n"), expected);
+  EXPECT_THAT(csv("min_x,min_y,min_z,size_x,size_y,size_z\n1,2,3,3,3,3\n7,8,9,3,3,3\n,,,,,\n"),
+              expected);
 }
 
 TEST_F(TextImports, BoxesOfACentreAreRoundedOutward) {
@@ -224,6 +226,7 @@ TEST_F(TextImports, WhatIsWrongWithColumnsOfCsv) {
   const auto heading = [&](const std::string& names) { return wrong(names + "\n1,2,3,4,5,6\n"); };
   EXPECT_THAT(heading("min_x,min_y,min_z,max_x,max_y,mass"),
               AllOf(HasSubstr("no column max_z"), HasSubstr("mass")));
+  EXPECT_THAT(heading("a,\x1B[31m,\xFF,d,e,f"), HasSubstr("a, \\u001b[31m, \uFFFD, d"));
   EXPECT_THAT(heading("a,b,c,d,e,f"), HasSubstr("the heading is 'a, b, c, d, e, f'"));
   EXPECT_THAT(heading("min_x,min_y,min_z,max_x,max_y,max_z,half_x"), HasSubstr("two forms"));
   EXPECT_THAT(heading("min_x,min_y,min_z,half_x,half_y,half_z"), HasSubstr("min_x and half_x"));
