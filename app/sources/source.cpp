@@ -268,7 +268,8 @@ std::string importText(const Source& source) {
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
   for (const auto& [name, value] : options.changed()) {
-    // "strict" and "format" say how files are read, not what they hold: results need not state them.
+    // "strict" and "format" say how files are read, not what they hold: results need not state
+    // them.
     const auto uses = [key = name](const PlanEntry& entry) {
       return entry.source.reference.reading.contains(key) ||
              (entry.source.imported && (key == "format" || key == "strict"));
