@@ -20,6 +20,7 @@
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/output.h"
+#include "support/words.h"
 
 namespace broadmark::commands::compare {
 namespace {
@@ -70,9 +71,15 @@ class Settling {
     bool settled_any = false;
     for (CaseComparison& compared : comparison_.cases) {
       if (compared.verdict != Verdict::undecided) continue;
+      if (InterruptGuard::requested()) {
+        ++comparison_.not_run;
+        continue;
+      }
       try {
         settle(compared);
         settled_any = true;
+      } catch (const Interrupted&) {
+        ++comparison_.not_run;
       } catch (const InputError& error) {
         comparison_.notes.push_back(fmt::format("{}: not settled: {}", compared.id, error.what()));
       }
@@ -158,6 +165,9 @@ int run(const Options& options) {
                                    options.before.string(), path.string()));
     }
     write(options, comparison);
+    if (comparison.not_run > 0) {
+      throw Interrupted(fmt::format("{} not settled", counted(comparison.not_run, "case")));
+    }
     const int found = comparison.exitStatus();
     if (status != exit_status::wrong_answer && found != exit_status::success) status = found;
   }

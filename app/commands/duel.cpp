@@ -203,14 +203,21 @@ class Suite {
     }
     DuelOptions duel = options_.duel;
     duel.max_seconds = options_.max_seconds.value_or(kMaxSecondsOfCase);
-    {
+    try {
       DuelSeries duels("duels", count, duel, comparison_.options, options_.quiet);
       for (PlanEntry& entry : plan_.entries) runEntry(entry, duels);
+    } catch (const Interrupted&) {
+      comparison_.not_run = count - comparison_.cases.size();
+      if (comparison_.cases.empty()) throw;
     }
     if (!options_.printsOutput()) fmt::print("{}", formatComparison(comparison_));
-    if (!comparison_.comparable()) throw InputError("duel: A has none of the selected cases");
+    if (comparison_.not_run == 0 && !comparison_.comparable()) {
+      throw InputError("duel: A has none of the selected cases");
+    }
     writeComparison(options_, comparison_);
-    return comparison_.exitStatus();
+    if (comparison_.not_run == 0) return comparison_.exitStatus();
+    throw Interrupted(
+        fmt::format("{} of {} kept", comparison_.cases.size(), counted(count, "verdict")));
   }
 
  private:
@@ -402,7 +409,7 @@ Command command() {
   return {.name = "duel",
           .summary = "Compares variants, or two builds, in turns on the same frames.",
           .examples = {"duel brownian kd/t2 tide/t2 --objects 8000",
-                       "duel brownian freefall --algorithm kd,tide --with ../before/broadmark"},
+                       "duel brownian freefall --algorithm kd,tide --baseline-program ./before"},
           .add = add};
 }
 

@@ -357,6 +357,9 @@ std::string summaryText(const Comparison& comparison) {
   if (const auto drift = comparison.drift()) {
     text += fmt::format("; drift {:+.1f} %", 100 * *drift);
   }
+  if (comparison.not_run > 0) {
+    text += fmt::format("; interrupted, {} not run", counted(comparison.not_run, "duel"));
+  }
   return text;
 }
 

@@ -53,6 +53,7 @@ struct Comparison {
   /// Cases of B in their order, then those only in A.
   std::vector<CaseComparison> cases = {};
   std::vector<std::string> notes = {};  ///< on the runs as a whole
+  std::size_t not_run = 0;              ///< duels that an interrupt prevented or ended early
 
   [[nodiscard]] std::size_t count(Verdict verdict) const;
   /// Whether the case is a failure of B: a regression, a wrong answer, a missing case.
@@ -85,7 +86,7 @@ CaseComparison compareSides(const DuelResult&, std::size_t before, std::size_t a
 std::string verdictText(const CaseComparison&);
 /// "1.012…1.034", or "too few rounds".
 std::string intervalText(const Interval&, int digits);
-/// "12 cases: 10 same, 1 faster, 1 REGRESSED; drift +1.3 %"
+/// "12 cases: 10 same, 1 faster, 1 REGRESSED; drift +1.3 %; interrupted, 3 duels not run"
 std::string summaryText(const Comparison&);
 
 /// An output format for comparisons.

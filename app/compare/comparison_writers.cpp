@@ -51,19 +51,28 @@ std::string conditionsText(const Comparison& comparison) {
   return text;
 }
 
+/// Escapes a text for a cell of a table.
+std::string escapedForMarkdown(std::string_view text) {
+  return escaped(text, {{'|', "\\|"}, {'\n', " "}, {'\r', " "}});
+}
+
 std::string markdown(const Comparison& comparison) {
   std::string text =
       "| case | A | B | B/A | 95 % interval | verdict |\n|---|--:|--:|--:|--:|---|\n";
   for (const CaseComparison& compared : comparison.cases) {
-    text += fmt::format("| `{}` |", compared.id);
+    text += fmt::format("| `{}`{} |", escapedForMarkdown(compared.id),
+                        compared.baseline.empty()
+                            ? ""
+                            : fmt::format(" against `{}`", escapedForMarkdown(compared.baseline)));
     for (const std::string& cell : timeCells(compared)) {
       text += cell.empty() ? " |" : fmt::format(" {} |", cell);
     }
     const char* bold = comparison.fails(compared) ? "**" : "";
-    text += fmt::format(" {}{}{} |\n", bold, verdictText(compared), bold);
+    text += fmt::format(" {}{}{} |\n", bold, escapedForMarkdown(verdictText(compared)), bold);
   }
   text += '\n' + summaryText(comparison) + '\n';
   for (const std::string& note : comparison.notes) text += "\n- " + note;
+  if (!comparison.notes.empty()) text += '\n';
   return text;
 }
 
@@ -102,6 +111,7 @@ std::string json(const Comparison& comparison) {
                    {"fail_above", comparison.options.fail_above},
                    {"summary", summaryText(comparison)},
                    {"notes", comparison.notes},
+                   {"not_run", comparison.not_run},
                    {"cases", Json::array()}};
   for (const CaseComparison& compared : comparison.cases) {
     document["cases"].push_back(caseToJson(comparison, compared));

@@ -122,19 +122,23 @@ class Watchdog {
   std::thread thread_;
 };
 
+void handleCrashes() {
+  struct sigaction action = {};
+  action.sa_handler = onCrash;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
 class Guard final : public scenes::EngineObserver {
  public:
-  Guard() {
-    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
-      struct sigaction action = {};
-      action.sa_handler = onCrash;
-      action.sa_flags = static_cast<int>(SA_RESETHAND);
-      ::sigaction(signal, &action, nullptr);
-    }
-    scenes::observeEngines(*this);
-  }
+  Guard() { scenes::observeEngines(*this); }
 
   void onCallStart(const std::string& what) override {
+    // Libraries that were loaded since the last call may have replaced the handlers, as LLVM in
+    // OpenCL drivers does.
+    handleCrashes();
     const std::string message = fmt::format("broadmark: {}: crashed: ", what);
     crash_message[message.copy(crash_message, sizeof(crash_message) - 1)] = '\0';
     watchdog.start(what);

@@ -61,7 +61,7 @@ TEST_F(Compare, ASlowerCaseIsARegression) {
   const std::string id = after.at("cases").at(1).at("id");
   EXPECT_THAT(lineWith(slower.out, id), HasSubstr("REGRESSED"));
 
-  const ProgramResult tolerated = compareWith(after, {"--fail-above", "1e9"});
+  const ProgramResult tolerated = compareWith(after, {"--fail-above", "1e9%"});
   EXPECT_EQ(tolerated.status, 0);
   EXPECT_THAT(lineWith(tolerated.out, id), HasSubstr("slower"));
 
@@ -124,7 +124,7 @@ TEST_F(Compare, PairsAreNotComparedWithEvents) {
 
 TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
   const ProgramResult ended =
-      run({"compare", "before.json", "--by", "algorithm", "--fail-above", "1e9"});
+      run({"compare", "before.json", "--by", "algorithm", "--fail-above", "1e9%"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(linesOf(ended.out).back(), testing::StartsWith("2 cases: "));
   EXPECT_THAT(ended.out, HasSubstr(" against "));

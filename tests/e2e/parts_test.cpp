@@ -26,7 +26,7 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
       {parts::kBoost, {"list"}, {"boost-rtree: "}},
       {parts::kEmbree, {"list"}, {"embree-morton: "}},
       {parts::kFcl, {"list"}, {"fcl: "}},
-      {parts::kOde, {"list"}, {"  ode: ", "ode-hash: "}}};
+      {parts::kOde, {"list"}, {" ode: ", "ode-hash: "}}};
   for (const Shown& shown : all) {
     const ProgramResult ended = run(shown.call);
     EXPECT_EQ(ended.status, 0) << ended.err;

@@ -158,6 +158,22 @@ TEST_F(SuiteDuel, AlsoTwoVariantsHaveALimit) {
   EXPECT_THAT(readFile(file("d.md")), HasSubstr("**REGRESSED"));
 }
 
+TEST_F(SuiteDuel, AnInterruptKeepsWhatIsDecided) {
+  // The second recording would take hours to simulate.
+  Program program(directory_,
+                  {"duel", "brownian", "--objects", "50", "--frames", "20,1000000", "--algorithm",
+                   "time-validator", "--param", "phase_us=20,200", "--json", "d.json"});
+  ASSERT_TRUE(program.waitForText("phase_us=200: slower"));
+  program.signal(SIGINT);
+  const ProgramResult ended = program.wait();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_THAT(ended.out, HasSubstr("1 case: 1 slower; interrupted, 1 duel not run"));
+  EXPECT_THAT(ended.err, HasSubstr("broadmark: interrupted: 1 of 2 verdicts kept"));
+  const Json comparison = readJson(file("d.json"));
+  EXPECT_EQ(comparison.at("cases").size(), 1U);
+  EXPECT_EQ(comparison.at("not_run"), 1);
+}
+
 TEST_F(SuiteDuel, BadRequestsAreRefused) {
   expectRefusal({"duel", "freefall"}, {"--baseline-program"});
   expectRefusal(duelOf({"--algorithm", "sap"}), {"at least two variants"});
