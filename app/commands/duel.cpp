@@ -8,13 +8,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
 
+#include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/harness/runner.h"
 #include "command_line/option_types.h"
+#include "command_line/usage.h"
 #include "commands/command.h"
 #include "commands/duel_series.h"
 #include "compare/comparison.h"
@@ -25,6 +28,7 @@
 #include "run/plan.h"
 #include "run/recordings.h"
 #include "run/warnings.h"
+#include "sources/make_source.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/output.h"
@@ -346,56 +350,73 @@ int run(Options options) {
   return runVariants(std::move(options));
 }
 
+std::vector<std::string> sceneAndAlgorithmIds() {
+  std::vector<std::string> ids = sceneIds();
+  std::ranges::move(algorithmIds(builtinAlgorithms()), std::back_inserter(ids));
+  return ids;
+}
+
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option(
-         "source", options->words,
-         fmt::format("with --algorithm: what to run on ({}); else one such source and variants "
-                     "to compare on it, written like case names: ID[/ISA][/tTHREADS][/events]"
-                     "[/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; from a plug-in: "
-                     "PLUGIN.so:ID… or NAME:ID…",
-                     sourceKindsText()))
-      ->type_name("SOURCE")
-      ->required();
-  addVariants(app, options->cases);
-  addFilter(app, options->filter);
-  addPath(app, "--baseline-program", "PROGRAM", options->program,
-          "also run every case with this build of broadmark, and compare with it");
-  addPath(app, "--baseline-plugin", "FILE", options->baseline_plugin,
-          "compare the cases of --plugin with those of this build of it");
-  addShare(app, "--precision", options->duel.precision, true,
-           "width of the ratios' intervals at which a duel ends; variants within twice this "
-           "are the same");
-  addValue(
-      app, "--max-seconds", "S",
-      [=](const std::string& text) {
-        options->max_seconds = parseNumber(text, "--max-seconds", 0, true);
-      },
-      [] {
-        return fmt::format("{}, or {} for each case of a suite", kMaxSeconds, kMaxSecondsOfCase);
-      },
-      "end a duel after this many seconds");
-  addValue(
-      app, "--fail-above", "SHARE",
-      [=](const std::string& text) {
-        options->fail_above = parseShare(text, "--fail-above", true);
-      },
-      [] {
-        return fmt::format("{:.12g}% with a baseline, else none",
-                           100 * ComparisonOptions{}.fail_above);
-      },
-      "a case is a regression if it is slower by more than this share; a duel ends when that is "
-      "certain");
-  app.add_flag("--fail-undecided", options->fail_undecided, "fail if any case is undecided");
-  addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
-           "checks of the first pass: full: exact pair sets; hash: counts and hashes; off");
-  addDevice(app, options->cases.device);
-  addAnswer(app, options->cases.answer);
-  addSceneOptions(app, options->scene);
-  addPlugins(app, options->plugins);
-  addParameters(app, options->parameters);
-  addReadingOptions(app, options->reading);
+  {
+    const HelpGroup group(app, "What to open");
+    CLI::Option* source = app.add_option(
+        "source", options->words,
+        fmt::format("with --algorithm: what to run on ({}); else one such source and variants "
+                    "to compare on it, written like case names: ID[/ISA][/tTHREADS][/events]"
+                    "[/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; from a plug-in: "
+                    "PLUGIN.so:ID… or NAME:ID…",
+                    sourceKindsText()));
+    suggestValues(source->type_name("SOURCE")->required(), sceneAndAlgorithmIds());
+    addSceneOptions(app, options->scene);
+    addParameters(app, options->parameters);
+    addPlugins(app, options->plugins);
+  }
+  {
+    const HelpGroup group(app, "Algorithms");
+    addVariants(app, options->cases);
+    addAnswer(app, options->cases.answer);
+    addDevice(app, options->cases.device);
+    addFilter(app, options->filter);
+    addPath(app, "--baseline-program", "PROGRAM", options->program,
+            "also run every case with this build of broadmark, and compare with it");
+    addPath(app, "--baseline-plugin", "FILE", options->baseline_plugin,
+            "compare the cases of --plugin with those of this build of it");
+  }
+  {
+    const HelpGroup group(app, "How to measure");
+    addShare(app, "--precision", options->duel.precision, true,
+             "width of the ratios' intervals at which a duel ends; variants within twice this "
+             "are the same");
+    addValue(
+        app, "--max-seconds", "S",
+        [=](const std::string& text) {
+          options->max_seconds = parseNumber(text, "--max-seconds", 0, true);
+        },
+        [] {
+          return fmt::format("{}, or {} for each case of a suite", kMaxSeconds, kMaxSecondsOfCase);
+        },
+        "end a duel after this many seconds");
+    addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
+             "checks of the first pass: full: exact pair sets; hash: counts and hashes; off");
+  }
+  {
+    const HelpGroup group(app, "Verdicts");
+    addValue(
+        app, "--fail-above", "SHARE",
+        [=](const std::string& text) {
+          options->fail_above = parseShare(text, "--fail-above", true);
+        },
+        [] {
+          return fmt::format("{:.12g}% with a baseline, else none",
+                             100 * ComparisonOptions{}.fail_above);
+        },
+        "a case is a regression if it is slower by more than this share; a duel ends when that is "
+        "certain");
+    app.add_flag("--fail-undecided", options->fail_undecided, "fail if any case is undecided");
+  }
   addHosts(app, options->hosts);
+  addReadingOptions(app, options->reading);
   for (const ComparisonWriter& writer : comparisonWriters()) {
     addOutput(app, writer.name, options->outputs, writer.doc);
   }

@@ -200,6 +200,8 @@ TEST(Usage, BashCompletes) {
   EXPECT_EQ(completedByBash(script, "broadmark bake --engine bul"), "bullet\n");
   EXPECT_EQ(completedByBash(script, "broadmark bake --scenes gravity,expl"), "gravity,explosion\n");
   EXPECT_EQ(completedByBash(script, "broadmark --headless brow"), "brownian\n");
+  EXPECT_EQ(completedByBash(script, "broadmark duel brow"), "brownian\n");
+  EXPECT_EQ(completedByBash(script, "broadmark duel brownian kd-"), "kd-mt\n");
   EXPECT_EQ(completedByBash(script, "broadmark list eng"), "engines\n");
   EXPECT_EQ(completedByBash(script, "broadmark --headless x --check ha"), "hash\n");
   EXPECT_EQ(completedByBash(script, "broadmark wor"), "world worlds\n") << "not the worker";
