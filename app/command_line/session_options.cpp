@@ -256,7 +256,9 @@ SessionOptions SessionParser::options() const {
     throw InputError("--ui: has no effect without --screenshot or --script");
   }
   if (options.inspector() && options.sources.size() > 1) {
-    throw InputError(fmt::format("'{}': the inspector opens one source", options.sources[1]));
+    throw InputError(
+        fmt::format("'{}': the inspector opens one source; to run several, add --headless",
+                    options.sources[1]));
   }
   if (options.sources.empty() && !options.inspector()) {
     throw InputError("no source; expected: " + sourceKindsText());

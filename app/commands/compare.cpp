@@ -147,6 +147,11 @@ int run(const Options& options) {
     throw InputError(
         "compare: --settle: needs --baseline-program, the build of broadmark that ran A");
   }
+  OutputFiles files;
+  files.addSource(options.before);
+  for (const std::string& path : options.baselines) files.addSource(path);
+  for (const fs::path& path : judged) files.addSource(path);
+  for (const auto& [name, path] : options.outputs) files.require("--" + name, path);
   const InterruptGuard guard;
   std::vector<NamedResults> before = {readResults(options.before)};
   for (const std::string& path : options.baselines) before.push_back(readResults(path));

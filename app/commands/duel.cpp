@@ -239,6 +239,7 @@ class Suite {
       throw InputError(has_same_built_ins ? "duel: no selected case is of a plug-in: add --plugin"
                                           : "duel: no cases left to run after --filter");
     }
+    requireSupportedIsa(plan);
     return plan;
   }
 
@@ -321,6 +322,20 @@ class Suite {
   RunWarnings warnings_{environment_};
 };
 
+/// Throws InputError for a variant that looks like a source.
+void requireNoSource(const std::vector<std::string>& variants) {
+  const std::vector<std::string> scenes = sceneIds();
+  for (const std::string& variant : variants) {
+    const std::filesystem::path path = variant;
+    if (std::ranges::find(scenes, variant) == scenes.end() &&
+        !(path.has_extension() && std::filesystem::exists(path))) {
+      continue;
+    }
+    throw InputError(fmt::format(
+        "duel: '{}' is a source, not a variant: several sources need --algorithm", variant));
+  }
+}
+
 /// Throws InputError for options that select the cases of a suite.
 void requireNoSelection(const Options& options) {
   const std::pair<const char*, bool> given[] = {
@@ -336,7 +351,11 @@ void requireNoSelection(const Options& options) {
 }
 
 int run(Options options) {
-  for (const auto& [name, path] : options.outputs) requireOutput(path);
+  OutputFiles files;
+  for (const std::string& word : options.words) {
+    if (std::filesystem::exists(word)) files.addSource(word);
+  }
+  for (const auto& [name, path] : options.outputs) files.require("--" + name, path);
   const InterruptGuard guard;
   if (options.isSuite()) {
     if (options.cases.algorithms.empty() && !options.hasBaseline()) throw InputError(kTooFewSides);
@@ -346,6 +365,7 @@ int run(Options options) {
   requireNoSelection(options);
   options.sources = {options.words.front()};
   options.variants.assign(options.words.begin() + 1, options.words.end());
+  requireNoSource(options.variants);
   addEnginesOf(options.plugins, options.hosts.hard_limit_seconds);
   return runVariants(std::move(options));
 }

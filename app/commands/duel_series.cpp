@@ -47,8 +47,10 @@ CaseComparison DuelSeries::run(const DuelSide& before, const DuelSide& after,
   ++finished_;
   CaseComparison compared = compareSides(result, 0, 1, comparison_);
   if (!quiet_) {
-    progress_.printError(fmt::format("{}: {}; {} in {}", after.name, verdictText(compared),
-                                     progressText(result), durationText(result.seconds)));
+    const std::string effort =
+        result.ok() ? fmt::format("; {} in {}", progressText(result), durationText(result.seconds))
+                    : "";
+    progress_.printError(fmt::format("{}: {}{}", after.name, verdictText(compared), effort));
   }
   progress_.update(finished_ * static_cast<std::uint64_t>(kStepsPerDuel));
   const std::uint32_t frames = recording.scene().frames;

@@ -340,8 +340,8 @@ std::string verdictText(const CaseComparison& compared) {
   if (compared.verdict == Verdict::undecided) {
     const auto& [ratio, interval] = compared.ratio->ratio;
     if (!std::isfinite(interval.high)) return verdict + ": too few rounds";
-    return fmt::format("{}: cannot tell within ±{:.0f} %", verdict,
-                       100 * (interval.high / ratio - 1));
+    const double percent = 100 * (interval.high / ratio - 1);
+    return fmt::format("{}: cannot tell within ±{:.{}f} %", verdict, percent, percent < 1 ? 1 : 0);
   }
   return verdict;
 }

@@ -103,54 +103,22 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
   std::vector<fs::path> written_;
 };
 
-/// Canonical path of a file; the path itself if there is none, as for a pipe.
-fs::path canonicalPath(const fs::path& path) {
-  if (isStandardOutput(path)) return "-";
-  std::error_code failed;
-  fs::path canonical = fs::weakly_canonical(path, failed);
-  return failed ? path : canonical;
-}
-
 /// Throws InputError if an output file cannot be written, or would overwrite a source or another
 /// output, to fail before a long run.
 void requireWritable(const Plan& plan) {
-  std::map<fs::path, std::string> used_by;
+  OutputFiles files;
   for (const PlanEntry& entry : plan.entries) {
     // The settings file, not the user, chooses this path.
     if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
     const Source& source = entry.source;
-    const fs::path file =
-        source.simulation ? source.simulation->input() : fs::path(source.reference.path);
-    if (!file.empty()) used_by[canonicalPath(file)] = "a source";
+    files.addSource(source.simulation ? source.simulation->input()
+                                      : fs::path(source.reference.path));
   }
-  const auto require = [&](const std::string& option, const fs::path& path) {
-    const auto [other, is_free] = used_by.emplace(canonicalPath(path), option);
-    if (!is_free) {
-      throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
-                                   path.string(), other->second));
-    }
-    requireOutput(path);
-  };
-  for (const auto& [name, path] : plan.request.outputs) require("--" + name, path);
+  for (const auto& [name, path] : plan.request.outputs) files.require("--" + name, path);
   for (const PlanEntry& entry : plan.entries) {
-    if (!entry.screenshot.empty()) require("--screenshot", entry.screenshot);
-    if (entry.original) require("m_outputLog", entry.original->output_log);
+    if (!entry.screenshot.empty()) files.require("--screenshot", entry.screenshot);
+    if (entry.original) files.require("m_outputLog", entry.original->output_log);
   }
-}
-
-/// Throws InputError if this processor lacks the instruction sets of all cases.
-void requireSupportedIsa(const Plan& plan) {
-  for (const PlanEntry& entry : plan.entries) {
-    for (const Case& test_case : entry.cases) {
-      if (!test_case.algorithm.traits.vectorised || isaSupported(test_case.isa)) return;
-    }
-  }
-  std::vector<std::string_view> supported;
-  for (const Isa isa : supportedIsas()) supported.push_back(isaName(isa));
-  throw InputError(
-      fmt::format("--isa: {}: not supported by this processor, and all cases need it; "
-                  "choose auto or one of: {}",
-                  isaName(plan.entries.front().cases.front().isa), fmt::join(supported, ", ")));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "run/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iterator>
 #include <regex>
@@ -170,6 +171,20 @@ Plan makePlan(const RunRequest& request, PlanUse use, std::vector<Algorithm> alg
   }
   requireFrame(plan, use);
   return plan;
+}
+
+void requireSupportedIsa(const Plan& plan) {
+  for (const PlanEntry& entry : plan.entries) {
+    for (const Case& test_case : entry.cases) {
+      if (!test_case.algorithm.traits.vectorised || isaSupported(test_case.isa)) return;
+    }
+  }
+  std::vector<std::string_view> supported;
+  for (const Isa isa : supportedIsas()) supported.push_back(isaName(isa));
+  throw InputError(
+      fmt::format("--isa: {}: not supported by this processor, and all cases need it; "
+                  "choose auto or one of: {}",
+                  isaName(plan.entries.front().cases.front().isa), fmt::join(supported, ", ")));
 }
 
 std::vector<std::string> caseIds(const Plan& plan) {

@@ -38,6 +38,10 @@ Plan makePlan(const RunRequest&, PlanUse);
 /// Same with these algorithms, ignoring the plug-ins of the request.
 Plan makePlan(const RunRequest&, PlanUse, std::vector<Algorithm> algorithms);
 
+/// Throws InputError if this processor lacks the instruction sets of all cases. The plan must have
+/// entries.
+void requireSupportedIsa(const Plan&);
+
 /// Ids of all cases, as printed by --list.
 std::vector<std::string> caseIds(const Plan&);
 

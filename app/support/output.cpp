@@ -1,5 +1,6 @@
 #include "support/output.h"
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -11,9 +12,21 @@
 #include <iostream>
 #include <iterator>
 
+#include "broadmark/error.h"
 #include "broadmark/files.h"
 
 namespace broadmark {
+namespace {
+
+/// Canonical path of a file; the path itself if there is none, as for a pipe.
+std::filesystem::path canonicalPath(const std::filesystem::path& path) {
+  if (isStandardOutput(path)) return "-";
+  std::error_code failed;
+  std::filesystem::path canonical = std::filesystem::weakly_canonical(path, failed);
+  return failed ? path : canonical;
+}
+
+}  // namespace
 
 bool isStandardOutput(const std::filesystem::path& path) {
   return path == "-" || path == "/dev/stdout";
@@ -21,6 +34,19 @@ bool isStandardOutput(const std::filesystem::path& path) {
 
 void requireOutput(const std::filesystem::path& path) {
   if (!isStandardOutput(path)) AtomicFile probe(path);
+}
+
+void OutputFiles::addSource(const std::filesystem::path& path) {
+  if (!path.empty()) used_by_[canonicalPath(path)] = "a source";
+}
+
+void OutputFiles::require(const std::string& option, const std::filesystem::path& path) {
+  const auto [other, is_free] = used_by_.emplace(canonicalPath(path), option);
+  if (!is_free) {
+    throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
+                                 path.string(), other->second));
+  }
+  requireOutput(path);
 }
 
 std::string readInput(const std::filesystem::path& path) {

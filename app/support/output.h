@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,19 @@ bool isStandardOutput(const std::filesystem::path&);
 
 /// Throws InputError if the path is not writable, to fail before long work.
 void requireOutput(const std::filesystem::path&);
+
+/// The output files of a command.
+class OutputFiles {
+ public:
+  /// Adds a file that must not be overwritten. Does nothing for "".
+  void addSource(const std::filesystem::path&);
+  /// Throws InputError if the file of this option cannot be written, or would overwrite a source or
+  /// another output, to fail before long work.
+  void require(const std::string& option, const std::filesystem::path&);
+
+ private:
+  std::map<std::filesystem::path, std::string> used_by_;
+};
 
 /// Reads a file, or standard input for "-". Throws InputError.
 std::string readInput(const std::filesystem::path&);

@@ -129,6 +129,8 @@ TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
   EXPECT_THAT(linesOf(ended.out).back(), testing::StartsWith("2 cases: "));
   EXPECT_THAT(ended.out, HasSubstr(" against "));
   expectRefusal({"compare", "before.json"}, {"needs two results files", "--by"});
+  expectRefusal({"compare", "before.json", "before.json", "--json", "before.json"},
+                {"--json", "already the file of a source"});
   expectRefusal({"compare", "before.json", "--by", "colour"}, {"--by", "colour"});
 }
 

@@ -1,5 +1,6 @@
 // The command 'duel' on whole suites.
 
+#include "broadmark/execution.h"
 #include "e2e/end_to_end.h"
 #include "support/places.h"
 
@@ -179,6 +180,12 @@ TEST_F(SuiteDuel, BadRequestsAreRefused) {
   expectRefusal(duelOf({"--algorithm", "sap"}), {"at least two variants"});
   expectRefusal(duelOf({"--algorithm", "sapp"}), {"'sapp'", "'sap'"});
   expectRefusal({"duel", "freefall", "sap", "kd", "--threads", "2"}, {"--threads", "--algorithm"});
+  expectRefusal({"duel", "freefall", "brownian", "--baseline-program", places::program()},
+                {"'brownian' is a source", "--algorithm"});
+  expectRefusal(duelOf({"--algorithm", "kd", "--isa", isaSupported(Isa::neon) ? "avx2" : "neon",
+                        "--baseline-program", places::program()}),
+                {"--isa", "not supported"});
+  expectRefusal(duelOf({"--algorithm", "sap,kd", "--json", "-", "--csv", "-"}), {"already"});
   expectRefusal(duelOf({"--algorithm", "sap", "--baseline-program", "gone"}), {"gone"});
   expectRefusal(duelOf({"--algorithm", "sap", "--baseline-program", "/bin/false"}), {"/bin/false"});
   expectRefusal(duelOf({"--algorithm", "sap", "--baseline-plugin", quick_}), {"--plugin"});
