@@ -10,16 +10,21 @@
 #include <cstdlib>
 #include <deque>
 #include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "broadmark/harness/memory_limit.h"
+#include "broadmark/recordings/recording.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
 #include "commands/torture_log.h"
+#include "commands/torture_process.h"
 #include "request/cases.h"
 #include "request/hosts.h"
 #include "request/plugins.h"
@@ -53,6 +58,7 @@ struct Options : RunRequest {
   std::optional<std::uint64_t> rounds;  ///< limit that replaces `minutes`
   std::optional<std::uint64_t> seed;    ///< nothing: that of the log, or 1
   int jobs = allCores();
+  std::optional<std::uint64_t> served_seed;  ///< this process serves rounds of that seed
   fs::path output = "torture";
   bool quiet = false;
 };
@@ -62,9 +68,14 @@ class Torture {
   explicit Torture(Options options)
       : options_(std::move(options)), log_file_(options_.output / "torture.json") {
     selectSubjects();
-    readLog();
+    if (options_.served_seed) {
+      log_.seed = *options_.served_seed;
+      options_.quiet = true;
+    } else {
+      readLog();
+      makeDirectory(options_.output);
+    }
     readSources();
-    makeDirectory(options_.output);
     disableThreadCaches();
     torture_.seed = log_.seed;
     torture_.make_executor = executorFactory(options_.hosts);
@@ -78,6 +89,7 @@ class Torture {
 
   int run() {
     Progress progress("torture", kTicks, options_.quiet);
+    replayFound(progress);
     runJobs(progress);
     writeTextFile(log_file_, tortureLogText(log_));
     progress.print(formatTortureLog(log_));
@@ -86,6 +98,12 @@ class Torture {
     }
     progress.update(kTicks);
     return log_.times.empty() ? exit_status::success : exit_status::wrong_answer;
+  }
+
+  void serve(TortureChannel& channel) {
+    limitMemory(memoryLimitBytes(options_.hosts), /*permanent=*/true);
+    // Of the parent's limit, as it covers several calls.
+    channel.serve(torture_, std::chrono::duration<double>(2 * options_.hosts.hard_limit_seconds));
   }
 
  private:
@@ -127,8 +145,8 @@ class Torture {
     }
   }
 
-  /// Resumes from an earlier run's log, unless a plug-in has been rebuilt since, as that may have
-  /// fixed the faults found.
+  /// Resumes from an earlier run's log. Starts over, with the faults found, if a plug-in has been
+  /// rebuilt since.
   void readLog() {
     log_.seed = options_.seed.value_or(log_.seed);
     if (!fs::exists(log_file_)) return;
@@ -143,10 +161,59 @@ class Torture {
     if (log.builds != log_.builds) {
       if (!options_.quiet) fmt::print(stderr, "torture: a plug-in was rebuilt; starting over\n");
       log_.seed = log.seed;
+      log_.found = std::move(log.found);
       return;
     }
     log_ = std::move(log);
     repeated_.assign(log_.unfinished.begin(), log_.unfinished.end());
+  }
+
+  /// Reruns what was found earlier. Drops what no longer fails.
+  void replayFound(Progress& progress) {
+    std::map<FaultName, std::uint64_t> left;
+    for (FoundFault& fault : std::exchange(log_.found, {})) {
+      const FaultName name{fault.algorithm, fault.kind};
+      if (InterruptGuard::requested() || stillFails(fault, progress)) {
+        ++left[name];
+        log_.found.push_back(std::move(fault));
+      } else {
+        log_.times.erase(name);
+      }
+    }
+    for (const auto& [name, count] : left) log_.times.try_emplace(name, count);
+  }
+
+  bool stillFails(const FoundFault& fault, Progress& progress) const {
+    const fs::path file = options_.output / fs::path(fault.file).filename();
+    std::string outcome = "no longer fails";
+    bool fails = false;
+    try {
+      const std::optional<Fault> found =
+          findFault(foundCase(fault), *openRecordingFile(file), torture_,
+                    fault.kind == kFaultKinds.nameOf(FaultKind::leak));
+      fails = found.has_value();
+      if (fails) outcome = "still fails: " + found->text;
+      // It need not recur.
+      if (!fails && fault.kind == kFaultKinds.nameOf(FaultKind::nondeterministic)) {
+        outcome = "does not fail this time";
+        fails = !log_.coverage.empty();
+      }
+    } catch (const Cancelled&) {
+      return true;
+    } catch (const InputError& error) {
+      outcome = fmt::format("cannot be rerun: {}", error.what());
+      fails = true;
+    }
+    progress.print(fmt::format("{}: {}: {}", file.string(), fault.test_case, outcome));
+    return fails;
+  }
+
+  [[nodiscard]] Case foundCase(const FoundFault& fault) const {
+    const Algorithm& algorithm = torture_.only_case
+                                     ? torture_.only_case->algorithm
+                                     : requireAlgorithm(fault.algorithm, torture_.algorithms);
+    return caseNamed(
+        algorithm.plugin.empty() ? fault.test_case : algorithm.plugin + ":" + fault.test_case, "");
   }
 
   void readSources() {
@@ -205,14 +272,43 @@ class Torture {
   /// Runs successive rounds. An exception also stops the other threads.
   void runRounds(Clock::time_point start, Progress& progress) {
     try {
+      TortureProcess process(log_.seed);
       while (const std::optional<std::uint64_t> number = nextRound(start)) {
-        add(runTortureRound(torture_, *number), *number, progress);
+        if (options_.hosts.in_process || !options_.hosts.program.empty()) {
+          add(runTortureRound(torture_, *number), *number, progress);
+        } else {
+          runRound(process, *number, progress);
+        }
       }
     } catch (const Cancelled&) {
     } catch (...) {
       stopStarting();
       throw;
     }
+  }
+
+  /// Runs a round in the process for many; again, with workers, if it goes wrong.
+  void runRound(TortureProcess& process, std::uint64_t number, Progress& progress) {
+    TortureProcess::Outcome outcome = process.run(number, torture_.cancelled);
+    if (!outcome.suspected) {
+      add({.coverage = std::move(outcome.coverage), .finding = {}}, number, progress);
+      return;
+    }
+    // The memory that libraries retain varies.
+    if (outcome.suspected->fault.kind == FaultKind::leak) outcome.suspected.reset();
+    TortureRound round = runTortureRound(torture_, number, outcome.suspected);
+    const bool is_reproduced =
+        !round.finding || round.finding->fault.kind != FaultKind::nondeterministic;
+    // Else the cause may be what an earlier round has done to the process.
+    std::uint64_t found_in = number;
+    for (std::size_t i = 0; i < outcome.earlier.size() && !is_reproduced && found_in == number;
+         ++i) {
+      TortureRound earlier = runTortureRound(torture_, outcome.earlier[i]);
+      if (!earlier.finding) continue;
+      round.finding = std::move(earlier.finding);
+      found_in = outcome.earlier[i];
+    }
+    add(round, number, progress, found_in);
   }
 
   std::optional<std::uint64_t> nextRound(Clock::time_point start) {
@@ -230,7 +326,9 @@ class Torture {
     return number;
   }
 
-  void add(const TortureRound& round, std::uint64_t number, Progress& progress) {
+  /// `found_in`: the round of the finding, if another one.
+  void add(const TortureRound& round, std::uint64_t number, Progress& progress,
+           std::optional<std::uint64_t> found_in = {}) {
     const std::lock_guard lock(mutex_);
     std::erase(log_.unfinished, number);
     for (const auto& [key, count] : round.coverage) log_.coverage[key] += count;
@@ -238,7 +336,7 @@ class Torture {
     const TortureFinding& finding = *round.finding;
     const std::string kind(kFaultKinds.nameOf(finding.fault.kind));
     if (log_.times[{finding.test_case.algorithm.id, kind}]++ >= kMaxReproducers) return;
-    log_.found.push_back(write(finding, kind, number));
+    log_.found.push_back(write(finding, kind, found_in.value_or(number)));
     progress.print(formatFoundFault(log_.found.back()));
   }
 
@@ -328,7 +426,13 @@ std::function<int()> add(CLI::App& app) {
           "command resumes (default: torture)");
   addHosts(app, options->hosts);
   addQuiet(app, options->quiet);
+  app.add_option("--serve-rounds", options->served_seed)->group("");
   return [options] {
+    if (options->served_seed) {
+      TortureChannel channel;
+      Torture(std::move(*options)).serve(channel);
+      return 0;
+    }
     const InterruptGuard guard;
     return Torture(std::move(*options)).run();
   };

@@ -38,23 +38,34 @@ FoundFault foundFrom(const JsonFields& json) {
 }
 
 Json toJson(const TortureKey& key, const TortureCount& count) {
-  return {{"algorithm", key.algorithm}, {"isa", key.isa},
-          {"threads", key.threads},     {"answer", key.answer},
-          {"world", key.world},         {"worlds", count.worlds},
-          {"frames", count.frames},     {"changing", count.changing},
-          {"filtered", count.filtered}, {"filter_changes", count.filter_changes}};
+  return {{"algorithm", key.algorithm},
+          {"isa", key.isa},
+          {"threads", key.threads},
+          {"answer", key.answer},
+          {"world", key.world},
+          {"worlds", count.worlds},
+          {"frames", count.frames},
+          {"changing", count.changing},
+          {"filtered", count.filtered},
+          {"filter_changes", count.filter_changes},
+          {"max_bodies", count.max_bodies},
+          {"max_frames", count.max_frames}};
 }
 
 void addCount(TortureCoverage& coverage, const JsonFields& json) {
+  // Logs of older versions lack some.
+  const auto later = [&](const char* key) {
+    return json.has(key) ? json.integer<std::uint64_t>(key) : 0;
+  };
   coverage[{json.text("algorithm"), json.text("isa"), json.integer<int>("threads", 1),
             json.text("answer"), json.text("world")}] +=
       {.worlds = json.integer<std::uint64_t>("worlds"),
        .frames = json.integer<std::uint64_t>("frames"),
        .changing = json.integer<std::uint64_t>("changing"),
        .filtered = json.integer<std::uint64_t>("filtered"),
-       // Logs of older versions have none.
-       .filter_changes =
-           json.has("filter_changes") ? json.integer<std::uint64_t>("filter_changes") : 0};
+       .filter_changes = later("filter_changes"),
+       .max_bodies = later("max_bodies"),
+       .max_frames = later("max_frames")};
 }
 
 /// Coverage of an algorithm.
@@ -100,12 +111,37 @@ std::string coverageTable(const TortureLog& log) {
   return alignColumns(table, {false, true, true, true, true, true, true, true, false, false});
 }
 
+/// What was tried without a fault; more is not known.
+std::string nothingWrong(const TortureLog& log) {
+  TortureCount sum;
+  for (const auto& [key, count] : log.coverage) sum += count;
+  std::string text = fmt::format("nothing went wrong in {} of {}", counted(sum.frames, "frame"),
+                                 counted(sum.worlds, "world"));
+  // Logs of older versions do not tell.
+  if (sum.max_bodies > 0) {
+    text += fmt::format(", each of at most {}", extentText(sum.max_bodies, sum.max_frames));
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::uint64_t TortureLog::frames() const {
   std::uint64_t sum = 0;
   for (const auto& [key, count] : coverage) sum += count.frames;
   return sum;
+}
+
+Json toJson(const TortureCoverage& coverage) {
+  Json json = Json::array();
+  for (const auto& [key, count] : coverage) json.push_back(toJson(key, count));
+  return json;
+}
+
+TortureCoverage coverageFrom(const JsonFields& fields) {
+  TortureCoverage coverage;
+  fields.eachObject("coverage", [&](const JsonFields& count) { addCount(coverage, count); });
+  return coverage;
 }
 
 TortureLog parseTortureLog(std::string_view text, const std::string& name) {
@@ -129,20 +165,20 @@ TortureLog parseTortureLog(std::string_view text, const std::string& name) {
     log.times[{times.text("algorithm"), times.text("kind")}] =
         times.integer<std::uint64_t>("times");
   });
-  fields.eachObject("coverage", [&](const JsonFields& count) { addCount(log.coverage, count); });
+  log.coverage = coverageFrom(fields);
   return log;
 }
 
 std::string tortureLogText(const TortureLog& log) {
-  Json json = {{"schema", kSchema},        {"seed", log.seed},       {"subjects", log.subjects},
-               {"builds", log.builds},     {"next", log.next},       {"left", log.unfinished},
-               {"seconds", log.seconds},   {"found", Json::array()}, {"times", Json::array()},
-               {"coverage", Json::array()}};
+  Json json = {{"schema", kSchema},        {"seed", log.seed},
+               {"subjects", log.subjects}, {"builds", log.builds},
+               {"next", log.next},         {"left", log.unfinished},
+               {"seconds", log.seconds},   {"found", Json::array()},
+               {"times", Json::array()},   {"coverage", toJson(log.coverage)}};
   for (const FoundFault& fault : log.found) json["found"].push_back(toJson(fault));
   for (const auto& [fault, times] : log.times) {
     json["times"].push_back({{"algorithm", fault.first}, {"kind", fault.second}, {"times", times}});
   }
-  for (const auto& [key, count] : log.coverage) json["coverage"].push_back(toJson(key, count));
   return formatJson(json);
 }
 
@@ -160,7 +196,7 @@ std::string formatTortureLog(const TortureLog& log) {
       fmt::format("seed {}: {} of {} in {}: {:.0f} a second\n", log.seed, counted(frames, "frame"),
                   counted(log.next - log.unfinished.size(), "round"), waitingTime(log.seconds),
                   static_cast<double>(frames) / std::max(log.seconds, 1e-9));
-  if (log.times.empty()) return text + "nothing went wrong\n";
+  if (log.times.empty()) return text + nothingWrong(log);
   for (const auto& [fault, times] : log.times) {
     text += fmt::format("{}: {}: {}\n", fault.first, fault.second, counted(times, "time"));
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "broadmark/fuzz/torture.h"
+#include "broadmark/json_fields.h"
 
 namespace broadmark {
 
@@ -28,6 +29,9 @@ struct FoundFault {
   std::string command;  ///< reproduces the fault
 };
 
+/// The algorithm and the kind of a fault.
+using FaultName = std::pair<std::string, std::string>;
+
 /// "broadmark-torture/1"
 struct TortureLog {
   std::uint64_t seed = 1;
@@ -39,7 +43,7 @@ struct TortureLog {
   TortureCoverage coverage;
   std::vector<FoundFault> found;
   /// Number of faults per algorithm and kind of fault, including those without a reproducer.
-  std::map<std::pair<std::string, std::string>, std::uint64_t> times;
+  std::map<FaultName, std::uint64_t> times;
 
   [[nodiscard]] std::uint64_t frames() const;
 };
@@ -47,6 +51,10 @@ struct TortureLog {
 /// Parses and formats a log file. Throws InputError, calling the file `name`.
 TortureLog parseTortureLog(std::string_view text, const std::string& name);
 std::string tortureLogText(const TortureLog&);
+
+/// A coverage as the log's list, and back from the object that contains it.
+Json toJson(const TortureCoverage&);
+TortureCoverage coverageFrom(const JsonFields&);
 
 /// Formats a fault and the size of its reproducer on one line.
 std::string formatFoundFault(const FoundFault&);

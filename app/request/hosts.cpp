@@ -7,19 +7,22 @@
 
 namespace broadmark {
 
+std::uint64_t memoryLimitBytes(const HostOptions& options) {
+  constexpr double kGibibyte = 1 << 30;
+  if (!options.memory_limit_gib) return machineMemory();
+  return static_cast<std::uint64_t>(*options.memory_limit_gib * kGibibyte);
+}
+
 ExecutorFactory executorFactory(const HostOptions& options) {
   const bool is_other_program = !options.program.empty();
   if (options.in_process && !is_other_program) return makeInProcessExecutor;
-  constexpr double kGibibyte = 1 << 30;
-  const auto& limit = options.memory_limit_gib;
   const WorkerOptions defaults{
       // This program, even if its file has been replaced meanwhile.
       .command = {is_other_program ? std::filesystem::absolute(options.program).string()
                                    : "/proc/self/exe",
                   "worker"},
       .hard_limit = std::chrono::duration<double>(options.hard_limit_seconds),
-      .memory_limit_bytes =
-          limit ? static_cast<std::uint64_t>(*limit * kGibibyte) : machineMemory(),
+      .memory_limit_bytes = memoryLimitBytes(options),
       .pin = options.pin};
   return [defaults](const Case& test_case, CancelQuery cancelled) {
     WorkerOptions worker = defaults;

@@ -16,6 +16,9 @@ struct HostOptions {
   std::optional<double> memory_limit_gib;  ///< nothing: the machine's memory
 };
 
+/// The limit of a worker process.
+std::uint64_t memoryLimitBytes(const HostOptions&);
+
 ExecutorFactory executorFactory(const HostOptions&);
 
 }  // namespace broadmark

@@ -74,12 +74,80 @@ TEST(TortureRound, FindsAndShrinksEachPlantedFault) {
     EXPECT_EQ(finding->part.filter_changes.size(), algorithm.id == "stale-filter" ? 1U : 0U);
     // The shrunk part fails in its last frame.
     SubRecording part(*finding->frames, finding->part, "part");
-    Trial trial(finding->test_case, options.make_executor, options.cancelled);
+    Trial trial(finding->test_case, options);
     const auto fault = trial.run(part);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->kind, finding->fault.kind);
     EXPECT_EQ(fault->frame, part.scene().frames);
   }
+}
+
+TEST(TortureRound, FindsFaultsOfManyBodiesAndOfLateFrames) {
+  for (const Algorithm& algorithm : faulty::rareVariants()) {
+    SCOPED_TRACE(algorithm.id);
+    const bool is_late = algorithm.id == "late-fault";
+    TortureOptions options = optionsFor({algorithm});
+    // It takes all of the bodies, and minutes.
+    if (!is_late) options.is_news = [](const std::string&, FaultKind) { return false; };
+    std::optional<TortureFinding> finding;
+    for (std::uint64_t number = 0; number < 100 && !finding; ++number) {
+      finding = runTortureRound(options, number).finding;
+    }
+    ASSERT_TRUE(finding);
+    EXPECT_EQ(finding->fault.kind, FaultKind::wrong_answer);
+    EXPECT_EQ(finding->test_case.answer, AnswerKind::pairs);
+    if (is_late) {
+      EXPECT_TRUE(finding->minimal);
+      EXPECT_EQ(finding->part.bodies.size(), 2U);
+      EXPECT_EQ(finding->part.frames.size(), 42U);
+    } else {
+      EXPECT_EQ(finding->frames->scene().objects, 70'000U);
+    }
+  }
+}
+
+/// Wrong only with one value of one parameter.
+class Choosy final : public BoxBroadPhase {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({.name = "needed", .doc = "", .value = &needed_, .min = 0, .max = 10});
+    visit({.name = "other", .doc = "", .value = &other_, .min = 0, .max = 10});
+  }
+
+ private:
+  void findPairs() override {
+    std::vector<Pair> answer = sweptPairs(boxes());
+    if (needed_ == 7 && !answer.empty()) answer.pop_back();
+    for (const Pair pair : answer) pairs().add(pair.a, pair.b);
+  }
+
+  std::int64_t needed_ = 0;
+  std::int64_t other_ = 0;
+};
+
+TEST(TortureRound, SimplifiesSettingsThatTheFaultDoesNotNeed) {
+  const Algorithm algorithm{.id = "choosy", .traits = {.parallel = true}, .create = [] {
+                              return std::make_unique<Choosy>();
+                            }};
+  TortureOptions options = optionsFor({});
+  options.only_case = makeCase(algorithm, Isa::scalar, 3, "", {{"needed", "7"}, {"other", "3"}},
+                               AnswerKind::events);
+  const TortureRound round = runTortureRound(options, 0);
+  ASSERT_TRUE(round.finding);
+  EXPECT_EQ(caseName(round.finding->test_case), "choosy/t1/needed=7");
+  EXPECT_TRUE(round.finding->minimal);
+  EXPECT_EQ(round.finding->part.bodies.size(), 2U);
+}
+
+TEST(TortureRound, ReportsASuspectedFaultThatDoesNotRecur) {
+  const TortureOptions options = optionsFor({algorithmOf("bf")});
+  const SuspectedFault suspected{{FaultKind::failure, 0, "crashed"}, 5};
+  const TortureRound round = runTortureRound(options, 0, suspected);
+  ASSERT_TRUE(round.finding);
+  EXPECT_EQ(round.finding->fault.kind, FaultKind::nondeterministic);
+  EXPECT_EQ(round.finding->fault.text, "crashed, but not when rerun");
+  ASSERT_TRUE(round.finding->frames);
+  EXPECT_EQ(round.coverage.size(), runTortureRound(options, 0).coverage.size());
 }
 
 TEST(TortureRound, DoesNotShrinkWhatIsNoNews) {

@@ -218,6 +218,46 @@ Algorithm changingVariant(const std::string& id, const std::string& summary, Spo
           .create = [spoil] { return std::make_unique<LossyBruteForce<Spoil>>(spoil); }};
 }
 
+/// Stores ids in 16 bits.
+class ShortIds final : public BoxBroadPhase {
+  void findPairs() override {
+    for (const Pair pair : sweptPairs(boxes())) {
+      pairs().add(static_cast<std::uint16_t>(pair.a), static_cast<std::uint16_t>(pair.b));
+    }
+  }
+};
+
+/// Loses a pair in every frame after the fortieth.
+class LateFault final : public BoxBroadPhase {
+ public:
+  void updateObjects(const Frame& frame) override {
+    BoxBroadPhase::updateObjects(frame);
+    is_late_ = frame.index > 40;
+  }
+
+ private:
+  void findPairs() override {
+    std::vector<Pair> answer = sweptPairs(boxes());
+    if (is_late_ && !answer.empty()) answer.pop_back();
+    for (const Pair pair : answer) pairs().add(pair.a, pair.b);
+  }
+
+  bool is_late_ = false;
+};
+
+template <class Kind>
+Algorithm rareVariant(const std::string& id, const std::string& summary) {
+  return {.id = id,
+          .family = "Faulty",
+          .summary = summary,
+          .description = {.principle = "sweep",
+                          .optimisations = "",
+                          .time = "O(n log n + candidates)",
+                          .space = "O(n + k)",
+                          .source = "a test of Broadmark's, wrong on purpose"},
+          .create = [] { return std::make_unique<Kind>(); }};
+}
+
 Algorithm staleVariant() {
   Algorithm variant =
       changingVariant("stale-filter", "ignores changes of layers and tags", losePairsOfTwoLayers);
@@ -248,6 +288,17 @@ std::vector<Algorithm> variants() {
           staleVariant()};
 }
 
+std::vector<Algorithm> rareVariants() {
+  return {rareVariant<ShortIds>("short-ids", "wrong with more than 65,536 bodies"),
+          rareVariant<LateFault>("late-fault", "wrong after 40 frames")};
+}
+
+std::vector<Algorithm> allVariants() {
+  std::vector<Algorithm> all = variants();
+  for (Algorithm& variant : rareVariants()) all.push_back(std::move(variant));
+  return all;
+}
+
 }  // namespace broadmark::faulty
 
-BROADMARK_PLUGIN(broadmark::faulty::variants);
+BROADMARK_PLUGIN(broadmark::faulty::allVariants);

@@ -12,4 +12,7 @@ namespace broadmark::faulty {
 /// "stale-filter" ignores changes of the collision filter.
 std::vector<Algorithm> variants();
 
+/// "short-ids" is wrong only with more than 65,536 bodies, "late-fault" only after frame 40.
+std::vector<Algorithm> rareVariants();
+
 }  // namespace broadmark::faulty

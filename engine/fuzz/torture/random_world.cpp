@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "torture/changing.h"
@@ -42,11 +43,13 @@ void removeAbsent(std::vector<std::vector<Aabb>>& frames, Random& random) {
   }
 }
 
-RandomWorld generatedWorld(Random& random) {
+/// The number of bodies and frames are drawn unless given.
+RandomWorld generatedWorld(Random& random, std::optional<std::size_t> bodies = {},
+                           std::optional<std::uint32_t> last_frame = {}) {
   const bool is_unrelated = random.onceIn(20);
   const inputs::Input kind = random.anyOf(inputs::kAll);
-  const std::size_t n = randomCount(random, kind.all_overlap || is_unrelated);
-  const std::uint32_t count = randomFrameCount(random);
+  const std::size_t n = bodies ? *bodies : randomCount(random, kind.all_overlap || is_unrelated);
+  const std::uint32_t count = last_frame ? *last_frame : randomFrameCount(random);
   const auto seed = static_cast<std::uint64_t>(random.integer(0, 1'000'000'000));
   std::vector<std::vector<Aabb>> frames;
   for (std::uint32_t frame = 0; frame <= count; ++frame) {
@@ -122,6 +125,28 @@ std::vector<std::string> tortureWorlds() {
 RandomWorld randomWorld(Random& random, const TortureOptions& options) {
   const bool is_given = options.only_given || (!options.given.empty() && random.onceIn(10));
   return is_given ? excerptOf(random.anyOf(options.given), random) : generatedWorld(random);
+}
+
+RandomWorld largeWorld(Random& random) {
+  constexpr std::size_t kBodies = 70'000;
+  constexpr std::uint32_t kFrames = 2;
+  // Neither dense nor teleporting: that would take minutes.
+  const inputs::Input& kind = *std::ranges::find(inputs::kAll, "drifting", &inputs::Input::name);
+  const auto seed = static_cast<std::uint64_t>(random.integer(0, 1'000'000'000));
+  std::vector<std::vector<Aabb>> frames;
+  for (std::uint32_t frame = 0; frame <= kFrames; ++frame) {
+    frames.push_back(kind.boxes(kBodies, frame, seed));
+  }
+  SceneInfo scene = inputs::sceneOf(frames);
+  return {std::string(kind.name),
+          std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames))};
+}
+
+RandomWorld longWorld(Random& random) {
+  constexpr std::uint32_t kFrames = 300;
+  constexpr int kMaxBodies = 40;
+  const auto bodies = static_cast<std::size_t>(random.integer(2, kMaxBodies));
+  return generatedWorld(random, bodies, kFrames);
 }
 
 std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {

@@ -17,6 +17,11 @@ struct RandomWorld {
 /// A small world, with at least one frame after the initial pose.
 RandomWorld randomWorld(inputs::Random& random, const TortureOptions& options);
 
+/// A world of 70,000 bodies: more than 16 bits can number.
+RandomWorld largeWorld(inputs::Random& random);
+/// A world of 300 frames, with few bodies.
+RandomWorld longWorld(inputs::Random& random);
+
 /// The same world with the bodies in random order.
 std::unique_ptr<IndexedFrames> shuffled(inputs::Random& random, IndexedFrames& frames);
 

@@ -7,6 +7,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/fuzz/shrink.h"
+#include "delta_debugging.h"
 #include "torture/random_world.h"
 #include "torture/trial.h"
 
@@ -15,8 +16,10 @@ namespace {
 
 using inputs::Random;
 
-/// Worlds per round: enough to amortise the start of a process.
-constexpr int kWorlds = 40;
+/// Small worlds per round.
+constexpr std::size_t kWorlds = 40;
+
+constexpr const char* kNotWhenRerun = ", but not when rerun";
 
 /// Log-uniform above `min`; sometimes one of the limits.
 double randomValue(Random& random, double min, double max) {
@@ -66,27 +69,42 @@ class Round {
         random_(options.seed, static_cast<std::uint32_t>(number)),
         case_(options.only_case ? *options.only_case : randomCase(random_, options.algorithms)),
         is_exact_(makeInstance(case_)->margin() == 0),
-        trial_(case_, options.make_executor, options.cancelled) {}
+        trial_(case_, options) {}
 
-  TortureRound run() {
+  TortureRound run(const std::optional<SuspectedFault>& suspected) {
     TortureRound round;
-    RandomWorld world;
-    for (int i = 0; i < kWorlds; ++i) {
-      world = randomWorld(random_, options_);
-      const std::optional<Fault> fault = runOnce(world, round.coverage);
+    RandomWorld suspect;
+    for (std::size_t i = 0; i <= kWorlds; ++i) {
+      if (options_.on_world) options_.on_world();
+      RandomWorld world = i < kWorlds ? randomWorld(random_, options_) : extremeWorld();
+      if (world.frames == nullptr) break;
+      std::optional<Fault> fault = runOnce(world, round.coverage);
+      if (!fault && i + 1 == kWorlds) fault = leak(*world.frames);
       if (fault) return makeFinding(std::move(round), std::move(world), *fault);
+      if (suspected && suspected->world == i) suspect = std::move(world);
     }
-    const std::optional<Fault> fault = leak(*world.frames);
-    if (fault) return makeFinding(std::move(round), std::move(world), *fault);
-    return round;
+    if (suspect.frames == nullptr) return round;
+    Fault fault = suspected->fault;
+    fault.kind = FaultKind::nondeterministic;
+    fault.text += kNotWhenRerun;
+    return makeFinding(std::move(round), std::move(suspect), fault);
   }
 
  private:
+  /// Now and then a world of many bodies or frames; else none.
+  RandomWorld extremeWorld() {
+    if (options_.only_given || !random_.onceIn(8)) return {};
+    // Parameters, and algorithms that test all pairs, may take minutes for that many bodies.
+    const bool is_quick =
+        case_.parameters.empty() && !case_.algorithm.description.time.starts_with("O(n²");
+    return random_.onceIn(2) && is_quick ? largeWorld(random_) : longWorld(random_);
+  }
+
   /// Detects a leak that is reproducible in a new process: caches of malloc and libraries vary.
   std::optional<Fault> leak(IndexedFrames& world) {
     const AlgorithmTraits& traits = case_.algorithm.traits;
     if (traits.library_leaks || traits.on_device || !trial_.leak(world)) return std::nullopt;
-    return Trial(case_, options_.make_executor, options_.cancelled).leak(world);
+    return Trial(case_, options_).leak(world);
   }
 
   /// Runs a world, and repeats some of them.
@@ -118,7 +136,9 @@ class Round {
          .frames = scene.frames,
          .changing = scene.all_present ? 0 : scene.frames,
          .filtered = scene.filter.wantsAll() && !scene.filter_changes ? 0 : scene.frames,
-         .filter_changes = scene.filter_changes ? scene.frames : 0};
+         .filter_changes = scene.filter_changes ? scene.frames : 0,
+         .max_bodies = scene.objects,
+         .max_frames = scene.frames};
   }
 
   TortureRound makeFinding(TortureRound round, RandomWorld world, const Fault& fault) {
@@ -148,23 +168,59 @@ class Round {
     finding.part = selectAll(finding.frames->scene(), last);
     if (finding.fault.kind == FaultKind::nondeterministic || !isWorthShrinking(finding.fault.kind))
       return;
-    Trial trial(case_, options_.make_executor, options_.cancelled);
     const FaultKind kind = finding.fault.kind;
+    const CancelQuery is_late = deadlineQuery();
+    simplifyCase(finding, is_late);
+    Trial trial(finding.test_case, options_);
     const auto fails = [&](IndexedFrames& part) {
       const std::optional<Fault> fault = reproduce(trial, part, kind);
       if (fault) finding.fault = *fault;
       return fault.has_value();
     };
     const auto suspects = [&] { return finding.fault.suspects; };
-    const ShrinkOptions limits{.progress = {}, .cancelled = deadlineQuery()};
+    const ShrinkOptions limits{.progress = {}, .cancelled = is_late};
     try {
-      const ShrunkPart shrunk = shrinkPart(*finding.frames, last, suspects, fails, limits);
+      const ShrunkPart shrunk =
+          shrinkPart(*finding.frames, finding.part.frames.back(), suspects, fails, limits);
       finding.part = shrunk.part;
       finding.minimal = shrunk.minimal;
     } catch (const InputError&) {  // not reproducible
-      finding.fault.text += ", but not when rerun";
+      finding.fault.text += kNotWhenRerun;
       finding.fault.kind = FaultKind::nondeterministic;
     }
+  }
+
+  /// Simplifies the settings while the fault recurs, at the latest in the part's last frame: pairs
+  /// instead of events, one thread, default parameters.
+  void simplifyCase(TortureFinding& finding, const CancelQuery& is_late) const {
+    const auto still_fails = [&](const Case& simpler) {
+      if (is_late()) return false;
+      SubRecording frames(*finding.frames, finding.part, finding.world);
+      const std::optional<Fault> fault =
+          findFault(simpler, frames, options_, finding.fault.kind == FaultKind::leak);
+      if (!fault || fault->kind != finding.fault.kind) return false;
+      finding.test_case = simpler;
+      finding.fault = *fault;
+      finding.part = selectAll(finding.frames->scene(), std::max(fault->frame, 1U));
+      return true;
+    };
+    if (case_.answer != AnswerKind::pairs) {
+      Case simpler = finding.test_case;
+      simpler.answer = AnswerKind::pairs;
+      still_fails(simpler);
+    }
+    if (case_.threads > 1) {
+      Case simpler = finding.test_case;
+      simpler.threads = 1;
+      still_fails(simpler);
+    }
+    const std::vector<std::pair<std::string, std::string>> parameters(case_.parameters.begin(),
+                                                                      case_.parameters.end());
+    minimize(parameters, 0, [&](const auto& fewer) {
+      Case simpler = finding.test_case;
+      simpler.parameters = {fewer.begin(), fewer.end()};
+      return still_fails(simpler);
+    });
   }
 
   [[nodiscard]] bool isWorthShrinking(FaultKind kind) const {
@@ -194,11 +250,21 @@ TortureCount& TortureCount::operator+=(const TortureCount& other) {
   changing += other.changing;
   filtered += other.filtered;
   filter_changes += other.filter_changes;
+  max_bodies = std::max(max_bodies, other.max_bodies);
+  max_frames = std::max(max_frames, other.max_frames);
   return *this;
 }
 
-TortureRound runTortureRound(const TortureOptions& options, std::uint64_t number) {
-  return Round(options, number).run();
+TortureRound runTortureRound(const TortureOptions& options, std::uint64_t number,
+                             const std::optional<SuspectedFault>& suspected) {
+  return Round(options, number).run(suspected);
+}
+
+std::optional<Fault> findFault(const Case& test_case, IndexedFrames& frames,
+                               const TortureOptions& options, bool leak) {
+  Trial trial(test_case, options);
+  std::optional<Fault> fault = trial.run(frames);
+  return fault || !leak ? fault : trial.leak(frames);
 }
 
 }  // namespace broadmark

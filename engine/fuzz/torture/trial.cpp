@@ -4,16 +4,18 @@
 
 #include "broadmark/error.h"
 #include "broadmark/fuzz/shrink.h"
+#include "broadmark/harness/memory_limit.h"
 
 namespace broadmark {
 
-Trial::Trial(Case test_case, const ExecutorFactory& make_executor, const CancelQuery& cancelled)
-    : case_(std::move(test_case)), make_executor_(make_executor), cancelled_(cancelled) {}
+Trial::Trial(Case test_case, const TortureOptions& options)
+    : case_(std::move(test_case)), options_(options) {}
 
 std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* answers) {
   supported_ = true;
   if (!run_) {
-    run_.emplace(case_, RunPolicy::unlimited(CheckMode::hash), make_executor_, cancelled_);
+    run_.emplace(case_, RunPolicy::unlimited(CheckMode::hash), options_.make_executor,
+                 options_.cancelled);
   }
   std::optional<Fault> fault = runFrames(world, answers);
   if (fault || !supported_) run_.reset();
@@ -23,7 +25,7 @@ std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* a
 std::optional<Fault> Trial::runFrames(IndexedFrames& world, std::vector<PairDigest>* answers) {
   if (!run_->start(world.scene(), world.rewind())) return faultOfStatus(0);
   while (const std::optional<Frame> frame = world.next()) {
-    if (cancelled_ && cancelled_()) throw Cancelled();
+    if (options_.cancelled && options_.cancelled()) throw Cancelled();
     if (!run_->step(*frame)) return faultOfStatus(frame->index);
     if (std::optional<Fault> fault = judge(*frame)) return fault;
     if (answers != nullptr) answers->push_back(digest(run_->answer()));
@@ -64,13 +66,13 @@ std::optional<std::uint64_t> Trial::heapAfter(IndexedFrames& world, int passes) 
   for (int i = 0; i < passes; ++i) {
     if (run(world) || !supported_) return std::nullopt;
   }
-  return run_->report().heap_bytes;
+  return options_.own_process ? heapBytes() : run_->report().heap_bytes;
 }
 
 std::optional<Fault> Trial::leak(IndexedFrames& world) {
   // Caches of libraries and malloc eventually stop growing. A leak grows with the passes.
-  constexpr int kFirstPasses = 10;
-  constexpr std::array kPasses = {8, 16, 32, 64};
+  constexpr int kFirstPasses = 4;
+  constexpr std::array kPasses = {4, 8, 16, 32, 64};
   constexpr std::uint64_t kMinBytes = 16;  // smallest allocation
   constexpr double kMinGrowth = 1.5;
   std::optional<std::uint64_t> before = heapAfter(world, kFirstPasses);

@@ -12,8 +12,8 @@ namespace broadmark {
 /// Runs a case on worlds: in one executor until a fault, then in a new one.
 class Trial {
  public:
-  /// `make_executor` and `cancelled` are borrowed. Throws InputError for a bad parameter.
-  Trial(Case test_case, const ExecutorFactory& make_executor, const CancelQuery& cancelled);
+  /// The options are borrowed. Throws InputError for a bad parameter.
+  Trial(Case test_case, const TortureOptions& options);
 
   /// Runs all frames of a world; returns the first fault. With `answers`: appends the digest of
   /// each answer. Throws Cancelled, and InputError for a device that does not exist.
@@ -32,8 +32,7 @@ class Trial {
   std::optional<std::uint64_t> heapAfter(IndexedFrames& world, int passes);
 
   Case case_;
-  const ExecutorFactory& make_executor_;
-  const CancelQuery& cancelled_;
+  const TortureOptions& options_;
   std::optional<CaseRun> run_;
   bool supported_ = true;
 };

@@ -1,6 +1,5 @@
 // The worker's side: an InProcessExecutor that is called by messages.
 
-#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -26,12 +25,6 @@ using worker::SharedMemory;
 
 /// Peak resident memory of this process.
 std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
-
-/// Allocated memory that is not freed.
-std::uint64_t heapBytes() {
-  const auto heap = ::mallinfo2();
-  return heap.uordblks + heap.hblkhd;
-}
 
 /// Lets the OOM killer pick the worker, not its parent.
 void raiseOomScore() { std::ofstream("/proc/self/oom_score_adj") << 1000; }

@@ -2,8 +2,9 @@
 //
 // A round runs one random case: an algorithm, its parameters, instruction set, threads and kind of
 // answer. It runs many small worlds, one after the other in the same executor, some of them twice:
-// unchanged, or with the bodies in another order. A fault is shrunk. A round depends only on seed
-// and number, so any round can be repeated, in any order.
+// unchanged, or with the bodies in another order. Some rounds end with a world of many bodies or
+// frames. A fault is shrunk, and its case simplified. A round depends only on seed and number, so
+// any round can be repeated, in any order.
 #pragma once
 
 #include <compare>
@@ -68,6 +69,8 @@ struct TortureCount {
   std::uint64_t changing = 0;        ///< number of frames in which bodies may appear or disappear
   std::uint64_t filtered = 0;        ///< number of frames with unwanted pairs
   std::uint64_t filter_changes = 0;  ///< number of frames in which filters may change
+  std::uint64_t max_bodies = 0;      ///< of a world
+  std::uint64_t max_frames = 0;      ///< of a world
 
   TortureCount& operator+=(const TortureCount&);
 };
@@ -87,6 +90,9 @@ struct TortureOptions {
   std::vector<TortureRecording> given = {};  ///< excerpts serve as worlds, too: "given"
   bool only_given = false;                   ///< requires a given recording
   double max_shrink_seconds = 30;            ///< per fault; afterwards the best part is reported
+  /// The executor is this process, and these rounds are its only work: its heap tells leaks.
+  bool own_process = false;
+  std::function<void()> on_world = {};  ///< called before each world of a round
   /// Returns whether to shrink another such fault of that algorithm; empty: always. Called
   /// concurrently.
   std::function<bool(const std::string& algorithm, FaultKind)> is_news = {};
@@ -101,8 +107,20 @@ struct TortureRound {
   std::optional<TortureFinding> finding;  ///< the fault that ended the round
 };
 
-/// Runs a round. Does not count unsupported cases (a device, a number of bodies). Throws
-/// Cancelled, without any effect.
-TortureRound runTortureRound(const TortureOptions&, std::uint64_t number);
+/// A fault that a round had elsewhere, beside other rounds in a process, in its world number
+/// `world`.
+struct SuspectedFault {
+  Fault fault;
+  std::size_t world = 0;
+};
+
+/// Runs a round. Does not count unsupported cases (a device, a number of bodies). A round without
+/// a fault that had a suspected one has that as a nondeterministic one. Throws Cancelled, without
+/// any effect.
+TortureRound runTortureRound(const TortureOptions&, std::uint64_t number,
+                             const std::optional<SuspectedFault>& suspected = {});
+
+/// Returns the first fault of a case on a recording; with `leak`, also tries whether it leaks.
+std::optional<Fault> findFault(const Case&, IndexedFrames&, const TortureOptions&, bool leak);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Memory limits of this process.
+// Memory of this process, and its limits.
 #pragma once
 
 #include <cstdint>
@@ -15,5 +15,8 @@ std::optional<std::uint64_t> statusBytes(const char* key);
 void limitMemory(std::uint64_t bytes, bool permanent);
 
 std::uint64_t machineMemory();
+
+/// Memory that this process has allocated and not freed.
+std::uint64_t heapBytes();
 
 }  // namespace broadmark
