@@ -90,7 +90,7 @@ TEST(TortureRound, FindsFaultsOfManyBodiesAndOfLateFrames) {
     // It takes all of the bodies, and minutes.
     if (!is_late) options.is_news = [](const std::string&, FaultKind) { return false; };
     std::optional<TortureFinding> finding;
-    for (std::uint64_t number = 0; number < 100 && !finding; ++number) {
+    for (std::uint64_t number = 0; number < 300 && !finding; ++number) {
       finding = runTortureRound(options, number).finding;
     }
     ASSERT_TRUE(finding);

@@ -16,8 +16,9 @@ namespace {
 
 using inputs::Random;
 
-/// Small worlds per round.
+/// Small worlds per round. A device's driver takes about ten times as long for each.
 constexpr std::size_t kWorlds = 40;
+constexpr std::size_t kDeviceWorlds = 8;
 
 constexpr const char* kNotWhenRerun = ", but not when rerun";
 
@@ -74,12 +75,13 @@ class Round {
   TortureRound run(const std::optional<SuspectedFault>& suspected) {
     TortureRound round;
     RandomWorld suspect;
-    for (std::size_t i = 0; i <= kWorlds; ++i) {
+    const std::size_t count = case_.algorithm.traits.on_device ? kDeviceWorlds : kWorlds;
+    for (std::size_t i = 0; i <= count; ++i) {
       if (options_.on_world) options_.on_world();
-      RandomWorld world = i < kWorlds ? randomWorld(random_, options_) : extremeWorld();
+      RandomWorld world = i < count ? randomWorld(random_, options_) : extremeWorld();
       if (world.frames == nullptr) break;
       std::optional<Fault> fault = runOnce(world, round.coverage);
-      if (!fault && i + 1 == kWorlds) fault = leak(*world.frames);
+      if (!fault && i + 1 == count) fault = leak(*world.frames);
       if (fault) return makeFinding(std::move(round), std::move(world), *fault);
       if (suspected && suspected->world == i) suspect = std::move(world);
     }
@@ -97,7 +99,7 @@ class Round {
     // Parameters, and algorithms that test all pairs, may take minutes for that many bodies.
     const bool is_quick =
         case_.parameters.empty() && !case_.algorithm.description.time.starts_with("O(n²");
-    return random_.onceIn(2) && is_quick ? largeWorld(random_) : longWorld(random_);
+    return random_.onceIn(4) && is_quick ? largeWorld(random_) : longWorld(random_);
   }
 
   /// Detects a leak that is reproducible in a new process: caches of malloc and libraries vary.
