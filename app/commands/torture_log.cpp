@@ -54,8 +54,8 @@ Json toJson(const TortureKey& key, const TortureCount& count) {
 
 void addCount(TortureCoverage& coverage, const JsonFields& json) {
   // Logs of older versions lack some.
-  const auto later = [&](const char* key) {
-    return json.has(key) ? json.integer<std::uint64_t>(key) : 0;
+  const auto later = [&](const char* key, std::uint64_t before) {
+    return json.has(key) ? json.integer<std::uint64_t>(key) : before;
   };
   coverage[{json.text("algorithm"), json.text("isa"), json.integer<int>("threads", 1),
             json.text("answer"), json.text("world")}] +=
@@ -63,9 +63,9 @@ void addCount(TortureCoverage& coverage, const JsonFields& json) {
        .frames = json.integer<std::uint64_t>("frames"),
        .changing = json.integer<std::uint64_t>("changing"),
        .filtered = json.integer<std::uint64_t>("filtered"),
-       .filter_changes = later("filter_changes"),
-       .max_bodies = later("max_bodies"),
-       .max_frames = later("max_frames")};
+       .filter_changes = later("filter_changes", 0),
+       .max_bodies = later("max_bodies", 1000),
+       .max_frames = later("max_frames", 30)};
 }
 
 /// Coverage of an algorithm.
@@ -115,13 +115,9 @@ std::string coverageTable(const TortureLog& log) {
 std::string nothingWrong(const TortureLog& log) {
   TortureCount sum;
   for (const auto& [key, count] : log.coverage) sum += count;
-  std::string text = fmt::format("nothing went wrong in {} of {}", counted(sum.frames, "frame"),
-                                 counted(sum.worlds, "world"));
-  // Logs of older versions do not tell.
-  if (sum.max_bodies > 0) {
-    text += fmt::format(", each of at most {}", extentText(sum.max_bodies, sum.max_frames));
-  }
-  return text + "\n";
+  return fmt::format("nothing went wrong in {} of {}, each of at most {}\n",
+                     counted(sum.frames, "frame"), counted(sum.worlds, "world"),
+                     extentText(sum.max_bodies, sum.max_frames));
 }
 
 }  // namespace
