@@ -12,19 +12,25 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <iterator>
+#include <new>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "broad_phase.h"
 #include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/execution.h"
 #include "broadmark/harness/case_run.h"
 #include "broadmark/harness/memory_limit.h"
 #include "broadmark/harness/worker_process.h"
+#include "broadmark/names.h"
 
 namespace py = pybind11;
 
@@ -34,10 +40,22 @@ namespace {
 using Boxes = py::array_t<float, py::array::c_style>;
 using Pairs = py::array_t<std::uint32_t>;
 
+std::vector<Algorithm> algorithmsThatFindPairs() {
+  std::vector<Algorithm> all = builtinAlgorithms();
+  std::erase_if(all, [](const Algorithm& algorithm) { return !algorithm.traits.finds_pairs; });
+  return all;
+}
+
+std::vector<std::string> idsOf(const std::vector<Algorithm>& algorithms) {
+  std::vector<std::string> ids;
+  for (const Algorithm& algorithm : algorithms) ids.push_back(algorithm.id);
+  return ids;
+}
+
 Algorithm algorithmOf(const std::string& id) {
-  const std::vector<Algorithm> all = builtinAlgorithms();
+  const std::vector<Algorithm> all = algorithmsThatFindPairs();
   const auto found = std::ranges::find(all, id, &Algorithm::id);
-  if (found == all.end()) throw InputError("algorithm '" + id + "': unknown algorithm");
+  if (found == all.end()) throw InputError(unknownName("algorithm", id, idsOf(all)));
   return *found;
 }
 
@@ -175,19 +193,31 @@ Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
   return asArray(std::move(pairs));
 }
 
+/// Bad input and misuse, and what an update may fail by, become the package's InputError.
+void translateError(std::exception_ptr error) {
+  const auto raise = [](const char* text) {
+    PyErr_SetString(py::module_::import("broadmark.errors").attr("InputError").ptr(), text);
+  };
+  try {
+    if (error) std::rethrow_exception(std::move(error));
+  } catch (const InputError& input_error) {
+    raise(input_error.what());
+  } catch (const std::logic_error& misuse) {
+    raise(misuse.what());
+  } catch (const std::system_error& system_error) {
+    raise(system_error.what());
+  } catch (const std::bad_alloc&) {
+    raise("not enough memory");
+  }
+}
+
 }  // namespace
 }  // namespace broadmark
 
 PYBIND11_MODULE(_native, module) {
-  // The package converts it to its own InputError.
-  py::register_local_exception<broadmark::InputError>(module, "NativeInputError", PyExc_ValueError);
+  py::register_local_exception_translator(&broadmark::translateError);
   module.def("overlaps", &broadmark::overlapsOf, py::arg("boxes").noconvert(), py::arg("algorithm"),
              py::arg("threads"), py::arg("isa"), py::arg("parameters"), py::arg("program"));
-  module.def("algorithms", [] {
-    std::vector<std::string> ids;
-    for (const broadmark::Algorithm& algorithm : broadmark::builtinAlgorithms()) {
-      if (algorithm.traits.finds_pairs) ids.push_back(algorithm.id);
-    }
-    return ids;
-  });
+  module.def("algorithms", [] { return broadmark::idsOf(broadmark::algorithmsThatFindPairs()); });
+  broadmark::defineBroadPhase(module);
 }

@@ -6,18 +6,24 @@
 - `present`: which bodies are present; `EMPTY_BOX` is the box of an absent body
 - `run`: runs algorithms on a scene, a recording or arrays with the program `broadmark`
 - `overlaps`: the overlapping pairs of an array of boxes
+- `BroadPhase`: the overlapping pairs, or their changes, from frame to frame
 - `read_results`: results files as pandas data frames
 """
 
+from broadmark.arguments import EMPTY_BOX
+from broadmark.broad_phase import BroadPhase
 from broadmark.errors import InputError
 from broadmark.native import overlaps
 from broadmark.program import run
-from broadmark.recording2 import EMPTY_BOX, ChangingRecording, Groups, present
+from broadmark.recording2 import ChangingRecording, Groups, present
 from broadmark.recordings import PoseRecording, Recording, read_recording, write_recording
 from broadmark.results import Results, read_results
 
+__version__ = "0.1.0"  #: the program's
+
 __all__ = [
     "EMPTY_BOX",
+    "BroadPhase",
     "ChangingRecording",
     "Groups",
     "InputError",

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from broadmark.arguments import EMPTY_BOX, Floats
 from broadmark.errors import InputError
 from broadmark.files import atomic_write
 
-Floats = npt.NDArray[np.float32]
 Ids = npt.NDArray[np.uint32]
 
 MAGIC = b"BRDMARK2"
@@ -42,9 +42,6 @@ BOX_BYTES = 24
 #: A layer and three tags.
 FILTER_BYTES = 16
 MAX_KEY_INTERVAL = 256
-
-#: The box of an absent body.
-EMPTY_BOX: Floats = np.array([[np.inf] * 3, [-np.inf] * 3], np.float32)
 
 
 @dataclass(frozen=True)

@@ -18,15 +18,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from broadmark import recording2
+from broadmark.arguments import Floats, as_boxes
 from broadmark.errors import InputError
 from broadmark.files import atomic_write
 
 Path = str | os.PathLike[str]
-Floats = npt.NDArray[np.float32]
-EMPTY_BOX = recording2.EMPTY_BOX
 
 HEADER = np.dtype(
     [
@@ -110,45 +108,6 @@ def _text(field: bytes) -> str:
     return field.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
-def as_boxes(boxes: Any, *, may_be_absent: bool = False) -> Floats:
-    """Boxes as an array (n, 2, 3) of 32-bit floats; an array of this type is not copied.
-
-    Accepts (n, 2, 3) and (n, 6): min x y z, max x y z. Raises InputError for other shapes, NaN,
-    infinite coordinates and boxes with min > max. With `may_be_absent`, EMPTY_BOX marks an absent
-    body.
-    """
-    array = np.asarray(boxes)
-    if array.dtype.kind not in "iuf":
-        raise InputError(f"boxes: expected numbers, not type {array.dtype}")
-    if array.ndim == 2 and array.shape[1] == 6:
-        array = array.reshape(-1, 2, 3)
-    if array.ndim != 3 or array.shape[1:] != (2, 3):
-        raise InputError(f"boxes: of shape {array.shape}, expected (n, 2, 3) or (n, 6)")
-    array = array.astype(np.float32, copy=False)
-    low, high = array[:, 0], array[:, 1]
-    if len(array) and not (
-        (low <= high).all() and array.min() > -np.inf and array.max() < np.inf  # false for NaN
-    ):
-        _require_valid(array, may_be_absent)
-    return array
-
-
-def _require_valid(boxes: Floats, may_be_absent: bool) -> None:
-    """Raises InputError for the first invalid box."""
-    not_finite = ~np.isfinite(boxes).all((1, 2))
-    invalid = not_finite | (boxes[:, 0] > boxes[:, 1]).any(1)
-    if may_be_absent:
-        invalid &= (boxes != EMPTY_BOX).any((1, 2))
-        if not invalid.any():
-            return
-    body = int(invalid.argmax())
-    if not_finite[body]:
-        raise InputError(f"boxes: body {body} has a coordinate that is not a finite number")
-    raise InputError(
-        f"boxes: body {body} has a min {boxes[body, 0]} greater than its max {boxes[body, 1]}"
-    )
-
-
 def write_recording(
     path: Path,
     boxes: Iterable[Any],
@@ -163,8 +122,9 @@ def write_recording(
     `boxes` is an array (F + 1, n, 2, 3), or an iterable of arrays (n, 2, 3) or (n, 6), consumed as
     the file is written: the initial pose, which is not timed, then the frames. `world` (2, 3) is the
     bounding box of all boxes by default. `groups`: the collision filter, or, if layers or tags
-    change, that of each set. EMPTY_BOX for absent bodies and `groups` require .broadmark. The file is written atomically. Raises InputError for boxes that a recording cannot
-    hold.
+    change, that of each set. EMPTY_BOX for absent bodies and `groups` require .broadmark. Numbers other
+    than 32-bit floats are rounded outward. The file is written atomically. Raises InputError for boxes
+    that a recording cannot hold.
     """
     path = pathlib.Path(path)
     is_changing = path.suffix == ".broadmark"
@@ -175,6 +135,8 @@ def write_recording(
     if groups is not None and not is_changing:
         raise InputError(f"{path}: groups of bodies require the extension .broadmark")
     _field("name", name), _field("object type", object_type)
+    if not isinstance(boxes, Iterable):
+        raise InputError(f"boxes: expected an array or arrays, not type {type(boxes).__name__}")
     frames = _validated(boxes, may_be_absent=is_changing)
     first = next(frames, None)
     if first is None:

@@ -1,4 +1,4 @@
-"""Tests of the examples in the README and the notebook."""
+"""Tests of the examples in the README, the documents and the notebook."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from conftest import SOURCE_FOLDER
 EXAMPLES = SOURCE_FOLDER / "python/examples"
 
 
-def readme_examples() -> list[Any]:
-    text = (SOURCE_FOLDER / "README.md").read_text("utf-8")
+def examples_in(document: str) -> list[Any]:
+    text = (SOURCE_FOLDER / document).read_text("utf-8")
     return re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
 
 
 def test_the_readme_has_an_example_of_five_lines() -> None:
-    assert 0 < len(readme_examples()[0].strip().splitlines()) <= 5
+    assert 0 < len(examples_in("README.md")[0].strip().splitlines()) <= 5
 
 
-@pytest.mark.parametrize("example", readme_examples())
-def test_examples_of_the_readme_run(
+@pytest.mark.parametrize("example", examples_in("README.md") + examples_in("docs/embedding.md"))
+def test_examples_run(
     example: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
-    exec(compile(example, "README.md", "exec"), {})
+    exec(compile(example, "example", "exec"), {})
     for picture in re.findall(r'"(\w+\.png)"', example):
         assert (tmp_path / picture).stat().st_size > 5000
 

@@ -29,9 +29,9 @@ def random_world(chance: random.Random, varying: bool) -> World:
 
 
 def shuffled(chance: random.Random, items: Any) -> list[Any]:
-    items = list(items)
-    chance.shuffle(items)
-    return items
+    shuffled_items = list(items)
+    chance.shuffle(shuffled_items)
+    return shuffled_items
 
 
 def number(chance: random.Random, value: float) -> str:
@@ -151,6 +151,7 @@ def test_random_worlds_are_read_as_they_are(tmp_path: pathlib.Path, write: Any) 
         path = tmp_path / f"{seed}.broadmark"
         call("import", str(source), "-o", str(path), "--quiet")
         recording = broadmark.read_recording(path)
+        assert isinstance(recording, broadmark.ChangingRecording)
         ids = sorted(set().union(*world))
         assert recording.bodies == len(ids) and recording.last_frame == len(world) - 1
         for frame, bodies in enumerate(world):

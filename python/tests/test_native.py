@@ -11,7 +11,8 @@ import pytest
 from conftest import SOURCE_FOLDER
 
 import broadmark
-from broadmark.native import _native
+from broadmark.arguments import as_boxes
+from broadmark.native import native
 
 
 def boxes_in(side: float, count: int) -> Any:
@@ -27,7 +28,7 @@ def brute_force(boxes: Any) -> set[tuple[int, int]]:
     return {(a, b) for a, b in np.argwhere(overlap & overlap.T).tolist() if a < b}
 
 
-@pytest.mark.parametrize("algorithm", _native().algorithms())
+@pytest.mark.parametrize("algorithm", native().algorithms())
 @pytest.mark.parametrize("count", [0, 1, 2, 300])
 def test_every_algorithm_finds_the_pairs(algorithm: str, count: int) -> None:
     boxes = boxes_in(12, count)
@@ -49,6 +50,33 @@ def test_boxes_can_be_flat_doubles_or_views() -> None:
     padded[..., :3] = boxes
     for array in (boxes.reshape(-1, 6), boxes.astype(float), padded[..., :3], boxes.tolist()):
         assert set(map(tuple, broadmark.overlaps(array).tolist())) == expected
+
+
+def test_an_empty_list_is_no_boxes() -> None:
+    assert broadmark.overlaps([]).shape == (0, 2)
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.int64, np.int32, np.float16, np.longdouble])
+def test_other_numbers_are_rounded_outward(dtype: Any) -> None:
+    generator = np.random.default_rng(5)
+    size = 60_000 if dtype == np.float16 else 2.0**31 - 1
+    low = generator.uniform(-size, size, (1000, 3)).astype(dtype)
+    if dtype == np.int64:
+        low *= 2**31  # beyond the integers that doubles hold
+    boxes = np.stack([low, low], axis=1)
+    rounded = as_boxes(boxes)
+    exact, bounds = boxes.astype(np.longdouble), rounded.astype(np.longdouble)
+    assert rounded.dtype == np.float32
+    assert (bounds[:, 0] <= exact[:, 0]).all() and (bounds[:, 1] >= exact[:, 1]).all()
+    # By no more than to the next float.
+    assert (np.nextafter(rounded[:, 0], np.float32(np.inf)) > exact[:, 0]).all()
+    assert (np.nextafter(rounded[:, 1], np.float32(-np.inf)) < exact[:, 1]).all()
+    assert (rounded[:, 0] < rounded[:, 1]).any() == (dtype != np.float16)
+
+
+def test_doubles_that_touch_in_between_floats_overlap() -> None:
+    boxes = [[0, 0, 0, 1 + 2**-30, 1, 1], [1 + 2**-30, 0, 0, 2, 1, 1]]
+    assert broadmark.overlaps(boxes).tolist() == [[0, 1]]
 
 
 def test_parameters_and_instruction_sets() -> None:
@@ -105,7 +133,7 @@ assert broadmark.overlaps(boxes[:3], {algorithm!r}, threads=1).shape == (3, 2)
 
 @pytest.mark.parametrize("algorithm", ["axis-sweep", "dbvt-f", "ode-hash", "kd"])
 def test_the_interpreter_survives_the_end_of_memory(algorithm: str) -> None:
-    if algorithm not in _native().algorithms():
+    if algorithm not in native().algorithms():
         pytest.skip(f"no {algorithm} in this build")
     code = MEMORY_ENDS.format(package=str(SOURCE_FOLDER / "python"), algorithm=algorithm)
     ended = subprocess.run(
@@ -121,6 +149,8 @@ def test_the_gil_is_released() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+MASKED: Any = np.zeros((2, 6)).view(np.ma.MaskedArray)
+
 INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), expected \(n, 2, 3\) or \(n, 6\)"),
     ({"boxes": np.zeros((2, 3, 2))}, "of shape"),
@@ -128,9 +158,16 @@ INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"boxes": [[0, 0, 0, 1, np.inf, 1]]}, "body 0 has a coordinate"),
     ({"boxes": [[0] * 6, [0, 0, 2, 1, 1, 1]]}, "body 1 has a min"),
     ({"boxes": [["x"] * 6]}, "expected numbers"),
-    ({"algorithm": "quick"}, "algorithm 'quick': unknown; expected one of bf, "),
+    ({"boxes": [[0] * 6, [0] * 5]}, "boxes: not an array: "),
+    ({"boxes": MASKED}, "boxes: a masked array"),
+    ({"boxes": [[0, 0, 0, 1, 1, 1e300]]}, "body 0 has a coordinate"),
+    ({"boxes": [[1 + 1e-12, 0, 0, 1, 1, 1]]}, "body 0 has a min"),
+    ({"algorithm": "quick"}, r"unknown algorithm 'quick' \(one of: bf, "),
+    ({"algorithm": "colums"}, "unknown algorithm 'colums'; did you mean 'columns'?"),
+    ({"algorithm": "none"}, "unknown algorithm 'none'"),
     ({"isa": "mmx"}, "isa 'mmx'"),
-    ({"threads": 0}, "threads 0: expected a number from 1 to"),
+    ({"threads": 0}, "threads 0: expected an integer from 1 to"),
+    ({"threads": 1.5}, "threads 1.5: expected an integer"),
     ({"parameters": {"cells": 3}}, "unknown parameter 'cells'"),
     ({"parameters": {"objects_per_cell": "many"}}, "objects_per_cell"),
 ]

@@ -11,6 +11,7 @@ import pytest
 
 import broadmark
 from broadmark.commands import COMMANDS
+from broadmark.program import call
 
 
 def test_a_scene_is_run_with_any_options() -> None:
@@ -29,6 +30,16 @@ def test_arrays_are_run() -> None:
     results = broadmark.run([touching] * 4, algorithm="bf,sap,grid-sap")
     assert list(results.frames["pairs"]) == [1] * 9  # the first array is the initial pose
     assert set(results.cases["status"]) == {"ok"}
+
+
+def test_what_is_no_array_is_an_error() -> None:
+    source: Any = 5
+    with pytest.raises(broadmark.InputError, match="expected an array or arrays, not type int"):
+        broadmark.run(source)
+
+
+def test_the_version_is_that_of_the_program() -> None:
+    assert call("--version").split()[0] == broadmark.__version__
 
 
 def test_a_wrong_answer_is_a_status_not_an_exception(faulty_plugin: str) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import broadmark
 from broadmark.program import call
-from broadmark.recordings import as_boxes
+from broadmark.arguments import as_boxes
 
 
 def random_boxes(frames: int, bodies: int) -> Any:
