@@ -131,13 +131,6 @@ class Settling {
   std::string recording_hash_;
 };
 
-void write(const Options& options, const Comparison& comparison) {
-  for (const ComparisonWriter& writer : comparisonWriters()) {
-    const auto path = options.outputs.find(std::string(writer.name));
-    if (path != options.outputs.end()) writeOutput(path->second, writer.format(comparison));
-  }
-}
-
 int run(const Options& options) {
   const std::vector<fs::path> judged = judgedFiles(options);
   if (judged.size() > 1 && !options.outputs.empty()) {
@@ -169,7 +162,7 @@ int run(const Options& options) {
       throw InputError(fmt::format("{} and {}: have no comparable cases in common",
                                    options.before.string(), path.string()));
     }
-    write(options, comparison);
+    writeComparison(options.outputs, comparison);
     if (comparison.not_run > 0) {
       throw Interrupted(fmt::format("{} not settled", counted(comparison.not_run, "case")));
     }

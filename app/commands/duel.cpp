@@ -128,13 +128,6 @@ void printWarnings(const std::vector<DuelSide>& sides) {
   for (const DuelSide& side : sides) warnings.warningsFor(side.test_case);
 }
 
-void writeComparison(const Options& options, const Comparison& comparison) {
-  for (const ComparisonWriter& writer : comparisonWriters()) {
-    const auto path = options.outputs.find(std::string(writer.name));
-    if (path != options.outputs.end()) writeOutput(path->second, writer.format(comparison));
-  }
-}
-
 /// A duel of several variants on one source, which ranks them.
 int runVariants(Options options) {
   const std::vector<DuelSide> sides = sidesOf(options);
@@ -173,7 +166,7 @@ int runVariants(Options options) {
   if (const auto json = options.outputs.extract("json")) {
     writeOutput(json.mapped(), duelJson(result, source.reference));
   }
-  writeComparison(options, comparison);
+  writeComparison(options.outputs, comparison);
   const int status = exitStatusOf(result);
   return status == exit_status::success ? comparison.exitStatus() : status;
 }
@@ -218,7 +211,7 @@ class Suite {
     if (comparison_.not_run == 0 && !comparison_.comparable()) {
       throw InputError("duel: A has none of the selected cases");
     }
-    writeComparison(options_, comparison_);
+    writeComparison(options_.outputs, comparison_);
     if (comparison_.not_run == 0) return comparison_.exitStatus();
     throw Interrupted(
         fmt::format("{} of {} kept", comparison_.cases.size(), counted(count, "verdict")));

@@ -10,6 +10,7 @@
 #include "broadmark/analysis/duel.h"
 #include "broadmark/analysis/run_ratio.h"
 #include "broadmark/results/results.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 
@@ -97,6 +98,8 @@ struct ComparisonWriter {
 };
 /// All formats, in the order of the help.
 std::vector<ComparisonWriter> comparisonWriters();
+/// Writes the formats that have a path. Throws InputError.
+void writeComparison(const ResultPaths&, const Comparison&);
 /// Formats a human-readable table.
 std::string formatComparison(const Comparison&);
 

@@ -9,6 +9,7 @@
 #include "broadmark/json_fields.h"
 #include "broadmark/results/csv.h"
 #include "compare/comparison.h"
+#include "support/output.h"
 #include "support/table.h"
 #include "support/words.h"
 
@@ -221,6 +222,13 @@ std::vector<ComparisonWriter> comparisonWriters() {
           {"csv", "the comparison as CSV", csv},
           {"junit", "the comparison as JUnit XML", junit},
           {"github", "failures and undecided cases as annotations of GitHub's workflows", github}};
+}
+
+void writeComparison(const ResultPaths& paths, const Comparison& comparison) {
+  for (const ComparisonWriter& writer : comparisonWriters()) {
+    const auto path = paths.find(std::string(writer.name));
+    if (path != paths.end()) writeOutput(path->second, writer.format(comparison));
+  }
 }
 
 }  // namespace broadmark
