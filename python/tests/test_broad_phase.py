@@ -85,11 +85,11 @@ def frames_of(world: World, count: int = 60) -> Iterator[Any]:
         yield world.step()
 
 
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("isa", ["auto", "scalar"])
 @pytest.mark.parametrize("method", METHODS)
-def test_pairs_are_those_of_brute_force(method: Any, threads: int) -> None:
+def test_pairs_are_those_of_brute_force(method: Any, isa: str) -> None:
     world = World(1)
-    broad_phase = BroadPhase(method, threads=threads)
+    broad_phase = BroadPhase(method, isa=isa)
     found = 0
     for _ in frames_of(world):
         broad_phase.update(world.boxes)
@@ -99,6 +99,20 @@ def test_pairs_are_those_of_brute_force(method: Any, threads: int) -> None:
         assert broad_phase.size == len(world.boxes)
         found += len(pairs)
     assert found > 1000
+
+
+@pytest.mark.parametrize("threads", [2, None])
+@pytest.mark.parametrize("method", METHODS)
+def test_several_threads_find_the_pairs(method: Any, threads: int | None) -> None:
+    generator = np.random.default_rng(7)
+    broad_phase = BroadPhase(method, threads=threads)
+    low = generator.uniform(0, 20, (6000, 1, 3)).astype(np.float32)  # enough for threads
+    for _ in range(4):
+        low += generator.normal(0, 0.1, low.shape).astype(np.float32)
+        boxes = np.concatenate([low, low + 1], axis=1)
+        broad_phase.update(boxes)
+        expected = sorted(broadmark.overlaps(boxes, "bf-simd").tolist())
+        assert broad_phase.pairs().tolist() == expected and len(expected) > 1000
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -164,8 +178,8 @@ def test_a_restored_state_runs_on_alike(method: Any) -> None:
     world.change_filter(broad_phase, layers=32)
     for _ in frames_of(world, 10):
         broad_phase.update(world.boxes)
-    state, began = broad_phase.save(), broad_phase.began()
-    assert isinstance(state, bytes) and len(began) > 0
+    state, began, ended = broad_phase.save(), broad_phase.began(), broad_phase.ended()
+    assert isinstance(state, bytes) and len(began) + len(ended) > 0
     frames = []
     for _ in frames_of(world, 10):
         broad_phase.update(world.boxes)
@@ -176,6 +190,7 @@ def test_a_restored_state_runs_on_alike(method: Any) -> None:
         other.restore(bytearray(state))
         assert other.save() == state
         np.testing.assert_array_equal(other.began(), began)
+        np.testing.assert_array_equal(other.ended(), ended)
         for boxes, *events in frames:
             other.update(boxes)
             np.testing.assert_array_equal(other.began(), events[0])

@@ -169,7 +169,7 @@ INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"threads": 0}, "threads 0: expected an integer from 1 to"),
     ({"threads": 1.5}, "threads 1.5: expected an integer"),
     ({"parameters": {"cells": 3}}, "unknown parameter 'cells'"),
-    ({"parameters": {"objects_per_cell": "many"}}, "objects_per_cell"),
+    ({"algorithm": "grid-sap", "parameters": {"objects_per_cell": "many"}}, "objects_per_cell"),
 ]
 
 
