@@ -73,9 +73,9 @@ TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
 }
 
 // Building these kernels causes warnings, but their count must not be printed.
-TEST_F(Device, BulletsKernelsAreBuiltInSilence) {
+TEST_F(Device, KernelsAreBuiltInSilence) {
   const ProgramResult ended = run({"--headless", "brownian", "--objects", "50", "--frames", "1",
-                                   "--algorithm", "b3-sap", "--quiet"},
+                                   "--algorithm", "b3-sap,gpu-sap,gpu-grid", "--quiet"},
                                   {.environment = {{"POCL_CACHE_DIR", file("kernels").string()}}});
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err, "");

@@ -37,7 +37,7 @@ TEST_F(Plugin, RunsBesideTheBuiltInOnes) {
                                            "--param", "fat_margin=900", "--json", "results.json"}));
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
   const Json cases = readJson(file("results.json")).at("cases");
-  ASSERT_EQ(cases.size(), 6U);  // the whole family, and sap
+  ASSERT_EQ(cases.size(), 8U);  // the whole family, and sap
   EXPECT_EQ(cases[0].at("plugin"), "");
   EXPECT_EQ(cases[1].at("algorithm"), "faulty");
   EXPECT_EQ(cases[1].at("plugin"), plugin_);
