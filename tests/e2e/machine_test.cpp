@@ -91,8 +91,11 @@ TEST_F(Machine, DecimalCommas) {
 
 TEST_F(Machine, ClockGoesBackwards) {
   if (places::faultInjection().empty()) GTEST_SKIP() << "no faults can be injected";
-  expectOrdinaryResults("export BROADMARK_FAULT='backwards 1' LD_PRELOAD=" +
-                        places::faultInjection());
+  // LD_PRELOAD takes a name, because a space would end a path.
+  const fs::path library = places::faultInjection();
+  expectOrdinaryResults(
+      fmt::format("export BROADMARK_FAULT='backwards 1' LD_PRELOAD='{}' LD_LIBRARY_PATH='{}'",
+                  library.filename().string(), library.parent_path().string()));
 }
 
 TEST_F(Machine, OddNames) {
