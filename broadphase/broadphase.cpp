@@ -16,6 +16,7 @@
 
 #include "broadmark/adapters.h"
 #include "broadmark/broad_phase.h"
+#include "broadmark/exact_sum.h"
 #include "broadmark/large_array.h"
 #include "columns.h"
 #include "sorted_pairs.h"
@@ -35,18 +36,6 @@ std::span<const Pair> published(PairRun run) {
 
 std::string numbered(const char* what, std::size_t number) {
   return what + (" " + std::to_string(number));
-}
-
-/// A bound moved by a margin, rounded away from the box, within the range of floats.
-float movedBound(float bound, float margin) {
-  const float farthest = std::copysign(std::numeric_limits<float>::max(), margin);
-  const float sum = bound + margin;
-  if (!std::isfinite(sum)) return std::isfinite(bound) ? farthest : bound;
-  // The exact rounding error of the sum: D. E. Knuth, TAOCP 2, 4.2.2, theorem B.
-  const float added = sum - bound;
-  const float error = (bound - (sum - added)) + (margin - added);
-  const bool is_short = margin > 0 ? error > 0 : error < 0;
-  return is_short ? std::nextafter(sum, farthest) : sum;
 }
 
 /// Reads the caller's boxes, which need not be aligned.
@@ -113,9 +102,12 @@ class BoxReader {
 
   [[nodiscard]] Aabb enlarged(std::size_t body) const {
     Aabb box = raw(body);
+    constexpr float kMax = std::numeric_limits<float>::max();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.min[axis] = movedBound(box.min[axis], -margin_);
-      box.max[axis] = movedBound(box.max[axis], margin_);
+      float& min = box.min[axis];
+      float& max = box.max[axis];
+      if (std::isfinite(min)) min = std::max(floatBelow({min, -margin_}), -kMax);
+      if (std::isfinite(max)) max = std::min(floatAbove({max, margin_}), kMax);
     }
     return box;
   }

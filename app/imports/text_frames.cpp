@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "broadmark/exact_sum.h"
 #include "broadmark/scenes/simulation.h"
 #include "imports/files.h"
 
@@ -16,28 +17,6 @@ namespace broadmark::imports {
 namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
-
-/// A sum of two numbers, and its rounding error.
-struct ExactSum {
-  ExactSum(double a, double b) : value(a + b) {
-    const double part = value - a;
-    error = (a - (value - part)) + (b - part);
-  }
-  double value;
-  double error;
-};
-
-// The nearest float that is not above, or not below, a sum.
-float floatBelow(const ExactSum& sum) {
-  const auto near = static_cast<float>(sum.value);
-  const bool above = near > sum.value || (near == sum.value && sum.error < 0);
-  return above ? std::nextafter(near, -kMaxFloat) : near;
-}
-float floatAbove(const ExactSum& sum) {
-  const auto near = static_cast<float>(sum.value);
-  const bool below = near < sum.value || (near == sum.value && sum.error > 0);
-  return below ? std::nextafter(near, kMaxFloat) : near;
-}
 
 double radiusOf(const LineReader& lines, const std::vector<std::string_view>& words,
                 const ParticleColumns& columns, double stated) {

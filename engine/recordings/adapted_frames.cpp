@@ -54,6 +54,19 @@ const std::string* valueOf(const FrameAdapter& adapter, const ParameterValues& r
 
 }  // namespace
 
+Frame AdaptedFrames::readSource(std::uint32_t index) {
+  const Frame frame = frames_->at(index);
+  filter_ = frame.filter;
+  filter_changed_ = frame.filter_changed;
+  reports_changes_ = frame.changed.has_value();
+  return frame;
+}
+
+std::optional<std::span<const std::uint32_t>> AdaptedFrames::changed() const {
+  if (!reports_changes_) return {};
+  return changed_;
+}
+
 ParameterValues adaptersIn(ParameterValues reading) {
   std::erase_if(reading, [](const auto& option) {
     return std::ranges::find(kAdapters, option.first, &FrameAdapter::option) == kAdapters.end();

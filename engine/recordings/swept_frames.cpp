@@ -37,8 +37,9 @@ SceneInfo sweptScene(SceneInfo scene) {
   return scene;
 }
 
-SweptFrames::SweptFrames(std::unique_ptr<IndexedFrames> frames)
-    : frames_(std::move(frames)), scene_(sweptScene(frames_->scene())), boxes_(scene_.objects) {}
+SweptFrames::SweptFrames(std::unique_ptr<IndexedFrames> frames) : AdaptedFrames(std::move(frames)) {
+  scene_ = sweptScene(std::move(scene_));
+}
 
 std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {
   if (index == 0 || last_ != index - 1) {
@@ -55,16 +56,8 @@ std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {
   return boxes_;
 }
 
-std::optional<std::span<const std::uint32_t>> SweptFrames::changed() const {
-  if (!reports_changes_) return {};
-  return changed_;
-}
-
 void SweptFrames::begin(std::uint32_t index) {
-  const Frame frame = frames_->at(index);
-  filter_ = frame.filter;
-  filter_changed_ = frame.filter_changed;
-  reports_changes_ = frame.changed.has_value();
+  const Frame frame = readSource(index);
   before_.assign(frame.boxes.begin(), frame.boxes.end());
   for (std::size_t body = 0; body < boxes_.size(); ++body) {
     boxes_[body] = sweptBox(before_[body], before_[body]);
@@ -76,9 +69,7 @@ void SweptFrames::begin(std::uint32_t index) {
 }
 
 void SweptFrames::advance(std::uint32_t index) {
-  const Frame frame = frames_->at(index);
-  filter_ = frame.filter;
-  filter_changed_ = frame.filter_changed;
+  const Frame frame = readSource(index);
   if (!frame.changed) {
     for (std::size_t body = 0; body < boxes_.size(); ++body) {
       boxes_[body] = sweptBox(before_[body], frame.boxes[body]);

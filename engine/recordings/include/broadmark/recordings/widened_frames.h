@@ -3,14 +3,11 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "broadmark/frame.h"
-#include "broadmark/large_array.h"
+#include "broadmark/recordings/adapted_frames.h"
 
 namespace broadmark {
 
@@ -29,32 +26,15 @@ inline constexpr std::string_view kWidenedSuffix = " widened";
 SceneInfo widenedScene(SceneInfo, double distance);
 
 /// A source with widened boxes.
-class WidenedFrames final : public IndexedFrames {
+class WidenedFrames final : public AdaptedFrames {
  public:
   WidenedFrames(std::unique_ptr<IndexedFrames> frames, double distance);
 
-  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-  [[nodiscard]] const std::string& name() const override { return frames_->name(); }
-
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
-  [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const override;
-  [[nodiscard]] const CollisionFilter* filter() const override { return filter_; }
-  [[nodiscard]] std::span<const std::uint32_t> filterChanged() const override {
-    return filter_changed_;
-  }
   void widenAll(const Frame& frame);
 
-  std::unique_ptr<IndexedFrames> frames_;
   double distance_;
-  SceneInfo scene_;
-  std::optional<std::uint32_t> last_;  ///< the frame of boxes_, if any
-  LargeVector<Aabb> boxes_;            ///< widened
-  bool reports_changes_ = false;
-  std::vector<std::uint32_t> changed_;  ///< bodies with changed widened boxes
-  // As in frames_, until its next frame.
-  const CollisionFilter* filter_ = nullptr;
-  std::span<const std::uint32_t> filter_changed_;
 };
 
 }  // namespace broadmark
