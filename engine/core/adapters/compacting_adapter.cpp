@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "adapters/adapter.h"
 #include "adapters/occupancy_bitmap.h"
 #include "adapters/remapping_debug_draw.h"
 #include "adapters/world_lattice.h"
@@ -22,15 +23,11 @@ namespace broadmark {
 namespace {
 
 /// Wraps an algorithm that accepts a varying number of bodies.
-class CompactingAdapter final : public BroadPhase {
+class CompactingAdapter final : public Adapter {
  public:
   explicit CompactingAdapter(std::unique_ptr<BroadPhase> algorithm)
-      : algorithm_(std::move(algorithm)) {}
+      : Adapter(std::move(algorithm)) {}
 
-  void visitParameters(const ParameterVisitor& visit) override {
-    algorithm_->visitParameters(visit);
-  }
-  [[nodiscard]] float margin() const override { return algorithm_->margin(); }
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     team_ = &execution.team();
@@ -73,7 +70,6 @@ class CompactingAdapter final : public BroadPhase {
     runs_.clear();
     algorithm_->cleanCache();
   }
-  void updateStructures() override { algorithm_->updateStructures(); }
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
     const PairRuns found = algorithm_->overlaps();
@@ -85,7 +81,6 @@ class CompactingAdapter final : public BroadPhase {
     for (std::size_t i = 0; i < found.size(); ++i) runs_.push_back(pairs_[i].run());
   }
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
-  [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
   void drawStructure(DebugDraw& draw) const override {
     RemappingDebugDraw remapped(draw, bodies_);
     algorithm_->drawStructure(remapped);
@@ -95,7 +90,6 @@ class CompactingAdapter final : public BroadPhase {
     visit("bodies taking part", boxes_.size());
     algorithm_->visitCounters(visit);
   }
-  void visitSetup(const CounterVisitor& visit) const override { algorithm_->visitSetup(visit); }
   [[nodiscard]] std::string validate() const override {
     for (std::size_t index = 0; index < bodies_.size(); ++index) {
       if (index_of_[bodies_[index]] != index) return "a body's index is wrong";
@@ -268,7 +262,6 @@ class CompactingAdapter final : public BroadPhase {
                                                          enlarged(true_boxes_[indices.b], margin_));
   }
 
-  std::unique_ptr<BroadPhase> algorithm_;
   ThreadTeam* team_ = nullptr;
   float margin_ = 0;
   CollisionFilter filter_;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <utility>
 
+#include "adapters/adapter.h"
 #include "broadmark/adapters.h"
 
 namespace broadmark {
@@ -16,15 +17,10 @@ namespace {
 
 /// Converts an algorithm's answers to events at the end of phase 4. Faults in an answer become
 /// events, too: a pair reported twice begins twice, an invalid pair begins in every frame.
-class EventsFromPairs final : public BroadPhase {
+class EventsFromPairs final : public Adapter {
  public:
-  explicit EventsFromPairs(std::unique_ptr<BroadPhase> algorithm)
-      : algorithm_(std::move(algorithm)) {}
+  explicit EventsFromPairs(std::unique_ptr<BroadPhase> algorithm) : Adapter(std::move(algorithm)) {}
 
-  void visitParameters(const ParameterVisitor& visit) override {
-    algorithm_->visitParameters(visit);
-  }
-  [[nodiscard]] float margin() const override { return algorithm_->margin(); }
   /// Finds the pairs of the initial pose as in a frame without changes.
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
@@ -42,8 +38,6 @@ class EventsFromPairs final : public BroadPhase {
     searchOverlaps();
   }
   void updateObjects(const Frame& frame) override { algorithm_->updateObjects(frame); }
-  void cleanCache() override { algorithm_->cleanCache(); }
-  void updateStructures() override { algorithm_->updateStructures(); }
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
     const PairRuns answer = algorithm_->overlaps();
@@ -58,17 +52,12 @@ class EventsFromPairs final : public BroadPhase {
       ended_[worker] = shares_[worker].ended.run();
     }
   }
-  [[nodiscard]] PairRuns overlaps() const override { return algorithm_->overlaps(); }
   [[nodiscard]] PairEvents events() const override { return {began_, ended_}; }
-  [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
-  void drawStructure(DebugDraw& draw) const override { algorithm_->drawStructure(draw); }
   void visitCounters(const CounterVisitor& visit) const override {
     visit("pairs begun", pairCount(began_));
     visit("pairs ended", pairCount(ended_));
     algorithm_->visitCounters(visit);
   }
-  void visitSetup(const CounterVisitor& visit) const override { algorithm_->visitSetup(visit); }
-  [[nodiscard]] std::string validate() const override { return algorithm_->validate(); }
 
  private:
   /// Pairs encoded as integers in the same order.
@@ -165,7 +154,6 @@ class EventsFromPairs final : public BroadPhase {
     for (; before != own.before.end(); ++before) add(*before, own.ended);
   }
 
-  std::unique_ptr<BroadPhase> algorithm_;
   ThreadTeam* team_ = nullptr;
   std::size_t bodies_ = 0;
   int body_bits_ = 0;  ///< bits per body id

@@ -10,20 +10,17 @@
 #include <optional>
 #include <utility>
 
+#include "adapters/adapter.h"
 #include "broadmark/adapters.h"
 
 namespace broadmark {
 namespace {
 
-class FilterChangeAdapter final : public BroadPhase {
+class FilterChangeAdapter final : public Adapter {
  public:
   explicit FilterChangeAdapter(std::unique_ptr<BroadPhase> algorithm)
-      : algorithm_(std::move(algorithm)) {}
+      : Adapter(std::move(algorithm)) {}
 
-  void visitParameters(const ParameterVisitor& visit) override {
-    algorithm_->visitParameters(visit);
-  }
-  [[nodiscard]] float margin() const override { return algorithm_->margin(); }
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     filter_.emplace(scene.filter, scene.objects);
@@ -57,13 +54,10 @@ class FilterChangeAdapter final : public BroadPhase {
     algorithm_->updateObjects({frame.index, frame.boxes, reinserted_});
   }
 
-  void cleanCache() override { algorithm_->cleanCache(); }
-  void updateStructures() override { algorithm_->updateStructures(); }
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
     if (is_split_ && reports_events_) mergeEvents();
   }
-  [[nodiscard]] PairRuns overlaps() const override { return algorithm_->overlaps(); }
   void reportEvents() override {
     reports_events_ = true;
     algorithm_->reportEvents();
@@ -72,14 +66,10 @@ class FilterChangeAdapter final : public BroadPhase {
     if (is_split_) return {PairRuns(&began_run_, 1), PairRuns(&ended_run_, 1)};
     return algorithm_->events();
   }
-  [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
-  void drawStructure(DebugDraw& draw) const override { algorithm_->drawStructure(draw); }
   void visitCounters(const CounterVisitor& visit) const override {
     visit("bodies with a new filter", reinserted_.size());
     algorithm_->visitCounters(visit);
   }
-  void visitSetup(const CounterVisitor& visit) const override { algorithm_->visitSetup(visit); }
-  [[nodiscard]] std::string validate() const override { return algorithm_->validate(); }
 
  private:
   /// Runs the frame without these bodies, under their old filters.
@@ -121,7 +111,6 @@ class FilterChangeAdapter final : public BroadPhase {
     ended_run_ = ended_;
   }
 
-  std::unique_ptr<BroadPhase> algorithm_;
   std::optional<LiveFilter> filter_;
   bool reports_events_ = false;
   std::vector<std::uint8_t> present_;  ///< by body: 1 if present

@@ -35,8 +35,8 @@ std::vector<Isa> supportedIsas();
 /// The widest supported instruction set.
 Isa bestIsa();
 
-/// Somebody else's threads: calls job(worker) once for each worker below `workers`, in any order,
-/// at the same time or one after another, and returns when all calls have.
+/// Runs jobs on threads of the caller: calls job(worker) once for each worker below `workers`, in
+/// any order, at the same time or one after another, and returns when all calls have.
 using ParallelFor = std::function<void(int workers, const std::function<void(int worker)>& job)>;
 
 /// Exactly `size` workers, the caller being worker 0. A benchmark needs a fixed number of threads
@@ -116,7 +116,7 @@ class ExecutionContext {
  public:
   ExecutionContext(int threads, Isa isa, std::string device = {})
       : isa_(isa), device_(std::move(device)), team_(threads) {}
-  /// On somebody else's threads.
+  /// On threads of the caller.
   ExecutionContext(int threads, Isa isa, ParallelFor parallel_for)
       : isa_(isa), team_(threads, std::move(parallel_for)) {}
   /// Destroys the latest resource first: it may depend on earlier ones.
