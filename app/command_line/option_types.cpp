@@ -260,7 +260,7 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
       });
 }
 
-CLI::Option* addOutput(CLI::App& app, std::string_view format, ResultPaths& outputs,
+CLI::Option* addOutput(CLI::App& app, std::string_view format, OutputPaths& outputs,
                        std::string_view doc) {
   const HelpGroup group(app, "Results");
   const std::string name(format);
@@ -273,7 +273,7 @@ CLI::Option* addOutput(CLI::App& app, std::string_view format, ResultPaths& outp
                   fmt::format("{}; '-': to standard output, instead of the table", doc));
 }
 
-std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
+std::vector<CLI::Option*> addResultOutputs(CLI::App& app, OutputPaths& outputs) {
   std::vector<CLI::Option*> options;
   for (const ResultWriter& writer : resultWriters()) {
     options.push_back(addOutput(app, writer.name, outputs, writer.doc));

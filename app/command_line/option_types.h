@@ -110,10 +110,10 @@ CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins,
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
 /// An output file in one of several formats; `outputs` holds the given paths by `format`.
-CLI::Option* addOutput(CLI::App&, std::string_view format, ResultPaths& outputs,
+CLI::Option* addOutput(CLI::App&, std::string_view format, OutputPaths& outputs,
                        std::string_view doc);
 /// Output files of results: --json, --csv, …
-std::vector<CLI::Option*> addResultOutputs(CLI::App&, ResultPaths&);
+std::vector<CLI::Option*> addResultOutputs(CLI::App&, OutputPaths&);
 /// --quiet
 CLI::Option* addQuiet(CLI::App&, bool& quiet);
 /// --recorder

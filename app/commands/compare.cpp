@@ -37,7 +37,7 @@ struct Options {
   std::vector<std::string> plugins;  ///< of cases to settle
   DuelOptions duel{.max_seconds = 5};
   bool quiet = false;
-  ResultPaths outputs;
+  OutputPaths outputs;
 };
 
 NamedResults readResults(const fs::path& path) {
@@ -144,19 +144,17 @@ int run(const Options& options) {
   files.addSource(options.before);
   for (const std::string& path : options.baselines) files.addSource(path);
   for (const fs::path& path : judged) files.addSource(path);
-  for (const auto& [name, path] : options.outputs) files.require("--" + name, path);
+  files.require(options.outputs);
   const InterruptGuard guard;
   std::vector<NamedResults> before = {readResults(options.before)};
   for (const std::string& path : options.baselines) before.push_back(readResults(path));
-  const bool prints_output = std::ranges::any_of(
-      options.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   int status = exit_status::success;
   for (const fs::path& path : judged) {
     const NamedResults after = readResults(path);
     Comparison comparison = compareResults(before, after, options.comparison);
     if (options.settle) Settling(options, path, comparison).run();
     if (judged.size() > 1) fmt::print("B = {}\n", path.string());
-    if (!prints_output) fmt::print("{}", formatComparison(comparison));
+    if (!useStandardOutput(options.outputs)) fmt::print("{}", formatComparison(comparison));
     // An empty comparison must not look like a success.
     if (!comparison.comparable()) {
       throw InputError(fmt::format("{} and {}: have no comparable cases in common",

@@ -56,10 +56,6 @@ struct Options : RunRequest {
   /// Whether cases are selected as in a run, on any number of sources.
   [[nodiscard]] bool isSuite() const { return !cases.algorithms.empty() || words.size() == 1; }
 
-  [[nodiscard]] bool printsOutput() const {
-    return std::ranges::any_of(outputs,
-                               [](const auto& output) { return isStandardOutput(output.second); });
-  }
   /// Without a limit, differences between variants are no regressions.
   [[nodiscard]] ComparisonOptions comparison() const {
     ComparisonOptions comparison;
@@ -138,7 +134,6 @@ int runVariants(Options options) {
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
   options.duel.max_seconds = options.max_seconds.value_or(kMaxSeconds);
   options.duel.limit = options.fail_above.value_or(options.duel.limit);
-  options.duel.cancelled = InterruptGuard::requested;
   options.duel.progress = [&](const DuelResult& now) {
     if (!progress.isDue()) return;
     const double left = std::max(options.duel.max_seconds - now.seconds, 0.0);
@@ -147,15 +142,9 @@ int runVariants(Options options) {
         static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.max_seconds)),
         left);
   };
-  const DuelResult result = [&] {
-    try {
-      return runDuel(sides, *recording, options.duel);
-    } catch (const Cancelled&) {
-      throw Interrupted();
-    }
-  }();
+  const DuelResult result = runInterruptibleDuel(sides, *recording, options.duel);
   progress.update(static_cast<std::uint64_t>(kTicks));
-  if (!options.printsOutput()) progress.print(formatDuel(result, recording->scene()));
+  if (!useStandardOutput(options.outputs)) progress.print(formatDuel(result, recording->scene()));
   Comparison comparison{.command = "duel", .options = options.comparison()};
   if (!options.fail_above) {
     comparison.options.fail_above = std::numeric_limits<double>::infinity();
@@ -207,7 +196,7 @@ class Suite {
       comparison_.not_run = count - comparison_.cases.size();
       if (comparison_.cases.empty()) throw;
     }
-    if (!options_.printsOutput()) fmt::print("{}", formatComparison(comparison_));
+    if (!useStandardOutput(options_.outputs)) fmt::print("{}", formatComparison(comparison_));
     if (comparison_.not_run == 0 && !comparison_.comparable()) {
       throw InputError("duel: A has none of the selected cases");
     }
@@ -348,7 +337,7 @@ int run(Options options) {
   for (const std::string& word : options.words) {
     if (std::filesystem::exists(word)) files.addSource(word);
   }
-  for (const auto& [name, path] : options.outputs) files.require("--" + name, path);
+  files.require(options.outputs);
   const InterruptGuard guard;
   if (options.isSuite()) {
     if (options.cases.algorithms.empty() && !options.hasBaseline()) throw InputError(kTooFewSides);

@@ -16,6 +16,16 @@ constexpr double kStepsPerDuel = 1000;
 
 }  // namespace
 
+DuelResult runInterruptibleDuel(const std::vector<DuelSide>& sides, FrameSource& recording,
+                                DuelOptions options) {
+  options.cancelled = InterruptGuard::requested;
+  try {
+    return runDuel(sides, recording, options);
+  } catch (const Cancelled&) {
+    throw Interrupted();
+  }
+}
+
 DuelSeries::DuelSeries(std::string task, std::size_t count, const DuelOptions& options,
                        const ComparisonOptions& comparison, bool quiet)
     : options_(options),
@@ -25,7 +35,6 @@ DuelSeries::DuelSeries(std::string task, std::size_t count, const DuelOptions& o
   options_.precision = precisionFor(std::min(comparison.margin, comparison.fail_above));
   options_.limit = comparison.fail_above;
   options_.error_rate /= static_cast<double>(std::max<std::size_t>(count, 1));
-  options_.cancelled = InterruptGuard::requested;
 }
 
 CaseComparison DuelSeries::run(const DuelSide& before, const DuelSide& after,
@@ -37,13 +46,7 @@ CaseComparison DuelSeries::run(const DuelSide& before, const DuelSide& after,
     progress_.update(
         static_cast<std::uint64_t>(kStepsPerDuel * (static_cast<double>(finished_) + share)));
   };
-  const DuelResult result = [&] {
-    try {
-      return runDuel({before, after}, recording, options_);
-    } catch (const Cancelled&) {
-      throw Interrupted();
-    }
-  }();
+  const DuelResult result = runInterruptibleDuel({before, after}, recording, options_);
   ++finished_;
   CaseComparison compared = compareSides(result, 0, 1, comparison_);
   if (!quiet_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "broadmark/analysis/duel.h"
 #include "broadmark/recordings/recording.h"
@@ -12,6 +13,9 @@ namespace broadmark::commands {
 
 /// Precision that tells whether cases are the same within `margin`.
 inline double precisionFor(double margin) { return margin / 2; }
+
+/// Like runDuel(). Throws Interrupted if the user ends it.
+DuelResult runInterruptibleDuel(const std::vector<DuelSide>&, FrameSource& recording, DuelOptions);
 
 /// Runs duels, shows how their intervals narrow, and prints a line on standard error for each one
 /// that has ended, unless `quiet`.

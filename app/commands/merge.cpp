@@ -21,7 +21,7 @@ namespace {
 
 struct Options {
   std::vector<std::filesystem::path> sources;
-  ResultPaths outputs;
+  OutputPaths outputs;
 };
 
 int run(const Options& options) {

@@ -99,7 +99,7 @@ struct ComparisonWriter {
 /// All formats, in the order of the help.
 std::vector<ComparisonWriter> comparisonWriters();
 /// Writes the formats that have a path. Throws InputError.
-void writeComparison(const ResultPaths&, const Comparison&);
+void writeComparison(const OutputPaths&, const Comparison&);
 /// Formats a human-readable table.
 std::string formatComparison(const Comparison&);
 

@@ -224,7 +224,7 @@ std::vector<ComparisonWriter> comparisonWriters() {
           {"github", "failures and undecided cases as annotations of GitHub's workflows", github}};
 }
 
-void writeComparison(const ResultPaths& paths, const Comparison& comparison) {
+void writeComparison(const OutputPaths& paths, const Comparison& comparison) {
   for (const ComparisonWriter& writer : comparisonWriters()) {
     const auto path = paths.find(std::string(writer.name));
     if (path != paths.end()) writeOutput(path->second, writer.format(comparison));

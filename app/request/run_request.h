@@ -18,6 +18,7 @@
 #include "request/hosts.h"
 #include "request/reading_options.h"
 #include "request/repetitions.h"
+#include "support/output.h"
 
 namespace broadmark {
 
@@ -46,9 +47,6 @@ struct Shard {
   int count = 1;
 };
 
-/// Output paths of a run's results, by name of the result writer.
-using ResultPaths = std::map<std::string, std::filesystem::path>;
-
 struct RunRequest {
   std::vector<std::string> sources;
   std::vector<std::string> plugins;  ///< libraries with additional algorithms or engines
@@ -66,7 +64,7 @@ struct RunRequest {
   HostOptions hosts;
   bool allow_timeout = false;  ///< exceeded time limits do not fail the run
 
-  ResultPaths outputs;
+  OutputPaths outputs;
   bool print_pairs = false;          ///< print the wrong pairs of each mismatch
   std::filesystem::path record;      ///< directory for simulated recordings; "": none
   std::filesystem::path screenshot;  ///< "": none

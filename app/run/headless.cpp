@@ -97,8 +97,7 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
 
   const RunRequest& request_;
   /// Whether results go to standard output, and therefore nothing else.
-  const bool prints_results_ = std::ranges::any_of(
-      request_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
+  const bool prints_results_ = useStandardOutput(request_.outputs);
   bool picture_failed_ = false;
   std::vector<fs::path> written_;
 };
@@ -114,7 +113,7 @@ void requireWritable(const Plan& plan) {
     files.addSource(source.simulation ? source.simulation->input()
                                       : fs::path(source.reference.path));
   }
-  for (const auto& [name, path] : plan.request.outputs) files.require("--" + name, path);
+  files.require(plan.request.outputs);
   for (const PlanEntry& entry : plan.entries) {
     if (!entry.screenshot.empty()) files.require("--screenshot", entry.screenshot);
     if (entry.original) files.require("m_outputLog", entry.original->output_log);

@@ -15,7 +15,7 @@ std::unique_ptr<AppendedFile> openAppended(const std::filesystem::path& path) {
 
 /// Calls visit(writer, path) for each requested file.
 template <class Visit>
-void forEachFile(const ResultPaths& paths, Visit&& visit) {
+void forEachFile(const OutputPaths& paths, Visit&& visit) {
   for (const ResultWriter& writer : resultWriters()) {
     const auto found = paths.find(std::string(writer.name));
     if (found != paths.end()) visit(writer, found->second);
@@ -24,14 +24,14 @@ void forEachFile(const ResultPaths& paths, Visit&& visit) {
 
 }  // namespace
 
-void writeResults(const ResultPaths& paths, const Results& results) {
+void writeResults(const OutputPaths& paths, const Results& results) {
   if (results.cases.empty()) return;
   forEachFile(paths, [&](const ResultWriter& writer, const std::filesystem::path& path) {
     writeOutput(path, writer.format(results));
   });
 }
 
-ResultFiles::ResultFiles(const ResultPaths& paths, const Results& results) {
+ResultFiles::ResultFiles(const OutputPaths& paths, const Results& results) {
   forEachFile(paths, [&](const ResultWriter& writer, const std::filesystem::path& path) {
     if (writer.lines == nullptr) {
       whole_files_.emplace_back(writer, path);

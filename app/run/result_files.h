@@ -13,7 +13,7 @@
 namespace broadmark {
 
 /// Writes complete results to each of the paths, unless there are no cases.
-void writeResults(const ResultPaths& paths, const Results& results);
+void writeResults(const OutputPaths& paths, const Results& results);
 
 /// Keeps result files up to date during a run. Line-based files get each case when it is finished,
 /// synced to disc; the others are atomically replaced after each recording or, on standard output,
@@ -22,7 +22,7 @@ void writeResults(const ResultPaths& paths, const Results& results);
 class ResultFiles {
  public:
   /// Opens the line-based files; `results` has no cases yet. Paths are those of writeOutput().
-  ResultFiles(const ResultPaths& paths, const Results& results);
+  ResultFiles(const OutputPaths& paths, const Results& results);
 
   void add(const CaseResult& result);
   /// Replaces the files that are not line-based.

@@ -32,6 +32,11 @@ bool isStandardOutput(const std::filesystem::path& path) {
   return path == "-" || path == "/dev/stdout";
 }
 
+bool useStandardOutput(const OutputPaths& paths) {
+  return std::ranges::any_of(paths,
+                             [](const auto& output) { return isStandardOutput(output.second); });
+}
+
 void requireOutput(const std::filesystem::path& path) {
   if (!isStandardOutput(path)) AtomicFile probe(path);
 }
@@ -47,6 +52,10 @@ void OutputFiles::require(const std::string& option, const std::filesystem::path
                                  path.string(), other->second));
   }
   requireOutput(path);
+}
+
+void OutputFiles::require(const OutputPaths& paths) {
+  for (const auto& [name, path] : paths) require("--" + name, path);
 }
 
 std::string readInput(const std::filesystem::path& path) {

@@ -13,6 +13,11 @@ namespace broadmark {
 /// print nothing else to it.
 bool isStandardOutput(const std::filesystem::path&);
 
+/// Output files by the names of their options.
+using OutputPaths = std::map<std::string, std::filesystem::path>;
+/// Whether any of them is standard output.
+bool useStandardOutput(const OutputPaths&);
+
 /// Throws InputError if the path is not writable, to fail before long work.
 void requireOutput(const std::filesystem::path&);
 
@@ -24,6 +29,8 @@ class OutputFiles {
   /// Throws InputError if the file of this option cannot be written, or would overwrite a source or
   /// another output, to fail before long work.
   void require(const std::string& option, const std::filesystem::path&);
+  /// The same for each of these options.
+  void require(const OutputPaths&);
 
  private:
   std::map<std::filesystem::path, std::string> used_by_;
