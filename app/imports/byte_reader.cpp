@@ -4,13 +4,12 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <optional>
 
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
 #include "imports/contents.h"
+#include "imports/line_reader.h"
 
 namespace broadmark::imports {
 namespace {
@@ -19,20 +18,6 @@ constexpr std::size_t kBufferBytes = 1 << 16;
 
 bool isBlankByte(int byte) { return byte == ' ' || byte == '\t' || byte == '\v' || byte == '\f'; }
 bool isLineEnd(int byte) { return byte == '\n' || byte == '\r'; }
-
-/// Parses a number independently of the locale. One too small for a double is zero.
-std::optional<double> parsedNumber(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (rest != end) return {};
-  const std::size_t exponent = text.find_first_of("eE");
-  const bool is_tiny = exponent != std::string_view::npos && text.substr(exponent + 1, 1) == "-";
-  if (error == std::errc::result_out_of_range && is_tiny) return text.front() == '-' ? -0.0 : 0.0;
-  if (error != std::errc() || !std::isfinite(number)) return {};
-  return number;
-}
 
 }  // namespace
 
@@ -111,12 +96,12 @@ std::string_view ByteReader::word() {
 double ByteReader::realNumber(std::string_view what) {
   const std::string_view text = word();
   if (text.empty()) failCutShort(what);
-  const std::optional<double> number = parsedNumber(text);
-  if (!number) {
+  double number = 0;
+  if (!parseReal(text, number) || !std::isfinite(number)) {
     failAtWord(fmt::format("{} is '{}': a finite number is expected", what,
                            onOneLine(std::string(text.substr(0, 40)))));
   }
-  return *number;
+  return number;
 }
 
 void ByteReader::fail(std::uint64_t offset, std::string_view what) const {

@@ -208,9 +208,9 @@ class Scene {
                           : fmt::format("scene '{}'", onOneLine(name));
     };
     const std::uint32_t shown = chosen.value_or(0);
-    if (count > 1) note(summary_.used, title(shown));
+    if (count > 1) addOnce(summary_.used, title(shown));
     for (std::uint32_t index = 0; index < count; ++index) {
-      if (index != shown) note(summary_.left_out, title(index));
+      if (index != shown) addOnce(summary_.left_out, title(index));
     }
     const JsonFields scene = document_.item("scenes", shown);
     std::vector<std::uint32_t> roots = document_.indices(scene, "nodes", "nodes");
@@ -360,10 +360,10 @@ class Scene {
   void noteWhatIsLeftOut() {
     const auto left_out = [&](std::uint64_t number, std::string_view what, std::string_view more) {
       if (number == 0) return;
-      note(summary_.left_out, fmt::format("{}{}", counted(number, std::string(what)), more));
+      addOnce(summary_.left_out, fmt::format("{}{}", counted(number, std::string(what)), more));
     };
-    note(summary_.used, fmt::format("{} at {}", counted(meshes_.size(), "mesh", "meshes"),
-                                    counted(instances_.size(), "node")));
+    addOnce(summary_.used, fmt::format("{} at {}", counted(meshes_.size(), "mesh", "meshes"),
+                                       counted(instances_.size(), "node")));
     std::uint64_t nodes = 0;
     for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
       if (document_.item("nodes", index).has("mesh")) ++nodes;

@@ -67,11 +67,11 @@ bool isOfNoNode(const JsonFields& target, ImportSummary& summary) {
       fail(target, fmt::format("'{}' is animated by the extension {}, which is not supported",
                                onOneLine(driven), kPointer));
     }
-    note(summary.left_out, fmt::format("animation of {}", onOneLine(driven)));
+    addOnce(summary.left_out, fmt::format("animation of {}", onOneLine(driven)));
     return true;
   }
   if (target.has("node")) return false;
-  note(summary.left_out, "an animation channel without a node");
+  addOnce(summary.left_out, "an animation channel without a node");
   return true;
 }
 
@@ -237,7 +237,7 @@ std::map<AnimatedProperty, std::shared_ptr<const Sampler>> readAnimations(Docume
     });
     const std::string of_all =
         chosen.empty() ? "" : fmt::format(" of {}", document.count("animations"));
-    note(summary.used, fmt::format("animation {}{}", titleOf(document, index), of_all));
+    addOnce(summary.used, fmt::format("animation {}{}", titleOf(document, index), of_all));
   }
   return animated;
 }

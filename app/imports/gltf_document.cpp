@@ -47,10 +47,6 @@ void fail(const JsonFields& object, std::string_view what) {
   throw InputError(fmt::format("{}: {}", object.name(), what));
 }
 
-void note(std::vector<std::string>& list, std::string text) {
-  if (std::ranges::find(list, text) == list.end()) list.push_back(std::move(text));
-}
-
 std::uint64_t integer(const JsonFields& object, const char* key, std::uint64_t max) {
   const Json& value = object.at(key);
   if (value.is_number_unsigned() && value.get<std::uint64_t>() <= max) {
@@ -126,7 +122,7 @@ void Document::readBinary(std::string_view bytes, ImportSummary& summary) {
     refuse(fmt::format("{} bytes are stated, but there are {}: cut short?", length, bytes.size()));
   }
   if (length < bytes.size()) {
-    note(summary.left_out, fmt::format("{} bytes behind the end", bytes.size() - length));
+    addOnce(summary.left_out, fmt::format("{} bytes behind the end", bytes.size() - length));
   }
   bytes = bytes.substr(0, length);
   std::optional<std::string_view> text;
@@ -173,7 +169,7 @@ void Document::requireExtensions(ImportSummary& summary) const {
   }
   if (!root().has("extensionsUsed")) return;
   for (const std::string& name : root().texts("extensionsUsed")) {
-    if (!isSupported(name)) note(summary.left_out, "extension " + onOneLine(name));
+    if (!isSupported(name)) addOnce(summary.left_out, "extension " + onOneLine(name));
   }
 }
 

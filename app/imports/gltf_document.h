@@ -27,9 +27,6 @@ std::string readBytes(const std::filesystem::path& path);
 /// Throws InputError about a JSON object of the file.
 [[noreturn]] void fail(const JsonFields& object, std::string_view what);
 
-/// Adds a text to a list of an ImportSummary, once for all files of a sequence.
-void note(std::vector<std::string>& list, std::string text);
-
 /// An integer from 0 to `max`; also if it is written as 3.0.
 std::uint64_t integer(const JsonFields& object, const char* key, std::uint64_t max);
 /// Same for an optional field.

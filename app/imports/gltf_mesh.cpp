@@ -79,7 +79,7 @@ class MeshReader {
     }
     const JsonFields attributes = object.object("attributes");
     if (!attributes.has("POSITION")) {
-      note(summary_.left_out, "a primitive without positions");
+      addOnce(summary_.left_out, "a primitive without positions");
       return;
     }
     VertexSource source{.positions = &document_.accessor(attributes, "POSITION", "VEC3")};

@@ -203,6 +203,7 @@ std::vector<fs::path> filesToImport(const std::vector<std::string>& names, const
     return kind != nullptr && kind->import->formats == import.formats;
   };
   std::vector<fs::path> files;
+  std::optional<fs::path> other;  // the first of another kind
   for (const std::string& stated : names) {
     const std::string name = NamedSource(stated).name();
     std::vector<fs::path> expanded = imports::expandName(name);
@@ -210,6 +211,9 @@ std::vector<fs::path> filesToImport(const std::vector<std::string>& names, const
     if (fs::is_directory(name, ignored)) {
       std::erase_if(expanded, [&](const fs::path& file) { return !is_of_kind(file); });
       if (expanded.empty() && format != "auto") expanded = imports::expandName(name);
+    } else if (format == "auto" && !other) {
+      const auto found = std::ranges::find_if_not(expanded, is_of_kind);
+      if (found != expanded.end()) other = *found;
     }
     if (expanded.empty()) {
       throw InputError(fmt::format("{}: matches no file; expected: {}", name,
@@ -217,10 +221,9 @@ std::vector<fs::path> filesToImport(const std::vector<std::string>& names, const
     }
     files.insert(files.end(), expanded.begin(), expanded.end());
   }
-  for (const fs::path& file : files) {
-    if (format != "auto" || is_of_kind(file)) continue;
+  if (other) {
     throw InputError(fmt::format("{}: not the same kind of file as {}: {} is expected",
-                                 file.string(), files.front().string(),
+                                 other->string(), files.front().string(),
                                  fmt::join(import.formats, ", ")));
   }
   imports::sortNaturally(files);
