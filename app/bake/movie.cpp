@@ -67,7 +67,7 @@ bool makeMovie(OffscreenContext& context, const MovieOptions& options, Recording
   removeOlder(folder);
   for (std::uint32_t number = 0; number < pictures; ++number) {
     const Frame frame = recording.at(number * options.every);
-    const std::vector<Pair> pairs = sweptPairs(frame.boxes, frame.filterIn(scene));
+    const std::vector<Pair> pairs = sweptPairs(frame.boxes, frame.filterIn(scene), scene.periodic);
     const PairRun all_pairs = pairs;
     writePng(picturePath(folder, number), drawFrame(context, scene, frame, {&all_pairs, 1},
                                                     options.picture.width, options.picture.height));

@@ -84,7 +84,7 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
     try {
       const SceneInfo& scene = recording.scene();
       const Frame frame = recording.at(request_.frame.value_or(scene.frames));
-      const PairRun pairs = oracle.pairs(frame.boxes, frame.filterIn(scene));
+      const PairRun pairs = oracle.pairs(frame.boxes, frame.filterIn(scene), scene.periodic);
       const PictureOptions& picture = request_.picture;
       const auto context = makeOffscreenContext(picture.gl);
       writePng(path, drawFrame(*context, scene, frame, {&pairs, 1}, picture.width, picture.height));

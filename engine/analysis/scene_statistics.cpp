@@ -224,7 +224,7 @@ std::optional<SceneDescription> describe(FrameSource& source, int parts,
   const bool is_filtered = !scene.filter.wantsAll() || scene.filter_changes;
   FilterTally tally(scene);
   const auto describe_frame = [&](const Frame& frame) {
-    const std::vector<Pair> pairs = sweptPairs(frame.boxes, frame.filterIn(scene));
+    const std::vector<Pair> pairs = sweptPairs(frame.boxes, frame.filterIn(scene), scene.periodic);
     frames.push_back(frameStatistics(scene, frame, before, pairs.size()));
     if (is_filtered && (frame.index > 0 || scene.frames == 0)) {
       tally.add(frame, pairs);

@@ -108,6 +108,36 @@ StripContents fill(const Strips& strips, std::span<const Aabb> boxes) {
   return contents;
 }
 
+[[noreturn]] void failTooMany(std::size_t max_pairs) {
+  throw InputError(fmt::format("more than {} pairs overlap: too many to compute", max_pairs));
+}
+
+/// The pairs of all images: as those of more bodies, in a world that is not periodic.
+std::vector<Pair> periodicPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                                const PeriodicBox& periodic, std::size_t max_pairs) {
+  std::vector<Aabb> images;
+  std::vector<std::uint32_t> bodies;
+  std::vector<unsigned> axes;  // along which an image lies lower
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    const unsigned protruding = protrudingAxes(boxes[body], periodic);
+    for (unsigned lower = 0; lower <= protruding; ++lower) {
+      if ((lower & ~protruding) != 0) continue;
+      images.push_back(image(boxes[body], lower, periodic));
+      bodies.push_back(body);
+      axes.push_back(lower);
+    }
+  }
+  std::vector<Pair> pairs;
+  for (const Pair found : sweptPairs(images, filter.of(bodies), {}, kUnlimitedPairs)) {
+    const Pair pair = orderedPair(bodies[found.a], bodies[found.b]);
+    if (pair.a != pair.b && (axes[found.a] & axes[found.b]) == 0) pairs.push_back(pair);
+  }
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  if (pairs.size() > max_pairs) failTooMany(max_pairs);
+  return pairs;
+}
+
 }  // namespace
 
 PairDigest digest(PairRuns runs) {
@@ -119,18 +149,23 @@ PairDigest digest(PairRuns runs) {
   return result;
 }
 
-std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                                  const PeriodicBox& periodic) {
   std::vector<Pair> pairs;
+  const bool repeats = periodic.repeats();
   for (std::uint32_t a = 0; a < boxes.size(); ++a) {
     for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-      if (overlaps(boxes[a], boxes[b]) && filter.wanted(a, b)) pairs.push_back({a, b});
+      const bool found =
+          repeats ? overlaps(boxes[a], boxes[b], periodic) : overlaps(boxes[a], boxes[b]);
+      if (found && filter.wanted(a, b)) pairs.push_back({a, b});
     }
   }
   return pairs;
 }
 
 std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
-                             std::size_t max_pairs) {
+                             const PeriodicBox& periodic, std::size_t max_pairs) {
+  if (periodic.repeats()) return periodicPairs(boxes, filter, periodic, max_pairs);
   std::vector<Pair> pairs;
   if (std::ranges::all_of(boxes, isEmpty)) return pairs;
   const std::array<int, 3> axes = axesByExtent(boxes);
@@ -153,10 +188,7 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
            ++j) {
         if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s &&
             filter.wanted(*i, *j)) {
-          if (pairs.size() == max_pairs) {
-            throw InputError(
-                fmt::format("more than {} pairs overlap: too many to compute", max_pairs));
-          }
+          if (pairs.size() == max_pairs) failTooMany(max_pairs);
           pairs.push_back(orderedPair(*i, *j));
         }
       }

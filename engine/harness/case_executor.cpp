@@ -52,7 +52,7 @@ void requireRunnable(const Case& test_case, const SceneInfo& scene) {
         fmt::format("at most {} bodies, the scene has {}", traits.max_objects, scene.objects));
   }
   if (isChangingWorld(scene) && traits.changing_worlds == ChangingWorlds::unknown) {
-    throw UnsupportedError(scene.all_present
+    throw UnsupportedError(scene.all_present && !scene.periodic.repeats()
                                ? "does not support collision filters"
                                : "does not support scenes where bodies appear or disappear");
   }
@@ -75,6 +75,11 @@ bool hasInstancePerWorld(const Case& test_case, const SceneInfo& scene) {
 }
 
 std::unique_ptr<BroadPhase> makeWorldInstance(const Case& test_case, const SceneInfo& scene) {
+  if (scene.periodic.repeats()) {
+    return withImages(scene, [test_case](const SceneInfo& images) {
+      return makeWorldInstance(test_case, images);
+    });
+  }
   std::unique_ptr<BroadPhase> instance = makeInstance(test_case);
   if (isCompacted(test_case, scene)) return compacted(std::move(instance));
   if (scene.filter_changes) return withFilterChanges(std::move(instance));
@@ -119,7 +124,7 @@ std::unique_ptr<BroadPhase> InProcessExecutor::makeInstanceFor(const SceneInfo& 
                                              ? perWorld(scene, make, traits.exclusive.empty())
                                              : make(scene);
   if (case_.answer == AnswerKind::pairs) return instance;
-  if (!traits.events || isCompacted(case_, scene)) {
+  if (!traits.events || isCompacted(case_, scene) || scene.periodic.repeats()) {
     return withEvents(std::move(instance));
   }
   instance->reportEvents();

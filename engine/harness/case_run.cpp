@@ -63,7 +63,7 @@ bool CaseRun::attempt(Call&& call) {
 
 bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   stop();
-  filter_ = scene.filter;
+  scene_ = scene;
   frame_ = first.index;
   frames_ = 0;
   total_ns_ = 0;
@@ -107,20 +107,21 @@ void CaseRun::accumulateEvents(const Frame& frame) {
 
 std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle) {
   if (!checks()) return std::nullopt;
-  const CollisionFilter& filter = frame.filter == nullptr ? filter_ : *frame.filter;
+  const CollisionFilter& filter = frame.filterIn(scene_);
   if (policy_.check == CheckMode::hash && margin_ == 0 && accumulated_.impossible().empty()) {
     PairDigest found;
     if (!attempt(
             [&] { found = answersEvents() ? digest(accumulated_.pairs()) : executor_->digest(); }))
       return std::nullopt;
-    if (found == oracle.pairDigest(frame.boxes, filter))
+    if (found == oracle.pairDigest(frame.boxes, filter, scene_.periodic))
       return FrameDifference{.frame = frame.index};
   }
   PairRuns answer;
   if (!attempt([&] { answer = answersEvents() ? accumulated_.pairs() : executor_->answer(); }))
     return std::nullopt;
   FrameDifference difference =
-      findDifference(answer, oracle.pairs(frame.boxes, filter), frame, margin_, filter);
+      findDifference(answer, oracle.pairs(frame.boxes, filter, scene_.periodic), frame, margin_,
+                     filter, scene_.periodic);
   difference.addInvalid(accumulated_.impossible());
   if (difference.isMismatch()) {
     fail(Status::mismatch, atFrame(mismatchText(difference)));

@@ -22,9 +22,11 @@ void recordPair(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
 }
 
 /// The hash of everything that decides which pairs are correct.
-HashValue keyOf(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+HashValue keyOf(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                const PeriodicBox& periodic) {
   Hasher hasher;
   hasher.add(std::as_bytes(boxes));
+  if (periodic.repeats()) hasher.add(std::as_bytes(std::span(&periodic, 1)));
   if (filter.wantsAll()) return hasher.value();
   const LayerMatrix matrix = filter.matrix();
   const std::array<std::size_t, 3> sizes = {filter.layers().size(), filter.worlds().size(),
@@ -40,12 +42,12 @@ HashValue keyOf(std::span<const Aabb> boxes, const CollisionFilter& filter) {
 }  // namespace
 
 Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
-                             bool with_pairs) {
-  const HashValue key = keyOf(boxes, filter);
+                             const PeriodicBox& periodic, bool with_pairs) {
+  const HashValue key = keyOf(boxes, filter, periodic);
   const auto cached = answers_.find(key);
   if (cached != answers_.end() && (cached->second.pairs || !with_pairs)) return cached->second;
-  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter)
-                                              : sweptPairs(boxes, filter, max_pairs_);
+  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter, periodic)
+                                              : sweptPairs(boxes, filter, periodic, max_pairs_);
   Answer& answer = answers_[key];
   const PairRun pairs = scratch_;
   answer.digest = digest({&pairs, 1});
@@ -57,13 +59,15 @@ Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter&
   return answer;
 }
 
-std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
-  const Answer& answer = find(boxes, filter, true);
+std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                                    const PeriodicBox& periodic) {
+  const Answer& answer = find(boxes, filter, periodic, true);
   return answer.pairs ? *answer.pairs : scratch_;
 }
 
-PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter) {
-  return find(boxes, filter, false).digest;
+PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                              const PeriodicBox& periodic) {
+  return find(boxes, filter, periodic, false).digest;
 }
 
 void FrameDifference::addInvalid(PairRun pairs) {
@@ -76,7 +80,8 @@ std::string mismatchText(const FrameDifference& difference) {
 }
 
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, const Frame& frame,
-                               float margin, const CollisionFilter& filter) {
+                               float margin, const CollisionFilter& filter,
+                               const PeriodicBox& periodic) {
   FrameDifference difference{.frame = frame.index};
   std::vector<Pair> reported;
   reported.reserve(pairCount(answer));
@@ -106,7 +111,7 @@ FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, c
       continue;
     }
     if (filter.wanted(pair.a, pair.b) &&
-        overlaps(enlarged(frame.boxes[pair.a], margin), enlarged(frame.boxes[pair.b], margin))) {
+        overlaps(frame.boxes[pair.a], frame.boxes[pair.b], periodic, margin)) {
       recordPair(difference.allowed_extra_count, difference.allowed_extra_pairs, pair);
     } else {
       recordPair(difference.false_count, difference.false_pairs, pair);

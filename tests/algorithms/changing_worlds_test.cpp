@@ -1,5 +1,6 @@
 // Every listed algorithm must find the right pairs in every frame, in every configuration, in
-// worlds with bodies that appear and vanish, and with collision filters, which may change.
+// worlds with bodies that appear and vanish, with collision filters, which may change, and across
+// the boundaries of periodic worlds.
 
 #include <gtest/gtest.h>
 
@@ -33,9 +34,10 @@ class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> 
     scene.all_present = false;
     scene.filter = world.filterOf(0);
     scene.filter_changes = !world.filters.empty();
+    scene.periodic = world.periodic;
     std::vector<std::vector<Pair>> right;
     for (const auto& boxes : world.frames) {
-      right.push_back(bruteForcePairs(boxes, world.filterOf(right.size())));
+      right.push_back(bruteForcePairs(boxes, world.filterOf(right.size()), world.periodic));
     }
     for (auto& [name, test_run] : test_runs_) {
       SCOPED_TRACE(name + " on " + world.name + ", n = " + std::to_string(scene.objects));
@@ -45,7 +47,8 @@ class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> 
           const CollisionFilter& filter = world.filterOf(i);
           const PairRuns answer =
               test_run.step(world.frames[i], scene.filter_changes ? &filter : nullptr);
-          ASSERT_TRUE(isRight(answer, right[i], {i, world.frames[i]}, test_run.margin(), filter))
+          ASSERT_TRUE(isRight(answer, right[i], {i, world.frames[i]}, test_run.margin(), filter,
+                              world.periodic))
               << "in frame " << i;
           ASSERT_EQ(test_run.broadPhase().validate(), "") << "in frame " << i;
         }
@@ -102,6 +105,61 @@ TEST_P(EveryAlgorithmInChangingWorlds, FollowsFiltersThatChange) {
       if (HasFatalFailure() || IsSkipped()) return;
     }
   }
+}
+
+/// The middle of the boxes' bounds, along these axes: bodies lie several periods away.
+PeriodicBox middleOf(const std::vector<Aabb>& boxes, unsigned axes) {
+  Aabb bounds = kEmptyBox;
+  for (const Aabb& box : boxes) bounds = merged(bounds, box);
+  PeriodicBox periodic;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((axes >> axis & 1) == 0 || isEmpty(bounds)) continue;
+    const double extent = std::max(1e-3, double{bounds.max[axis]} - bounds.min[axis]);
+    periodic.min[axis] = bounds.min[axis] + 0.4 * extent;
+    periodic.max[axis] = periodic.min[axis] + 0.3 * extent;
+  }
+  return periodic;
+}
+
+TEST_P(EveryAlgorithmInChangingWorlds, FindsPairsAcrossPeriodicBoundaries) {
+  constexpr std::uint32_t kFrames = 6;
+  constexpr inputs::Input kInputs[] = {
+      {"drifting", inputs::drifting}, {"clustered", inputs::clustered}, {"still", inputs::still}};
+  constexpr std::size_t kCounts[] = {120, 33, 2, 60, 17, 1};
+  std::size_t turn = 0;
+  for (unsigned axes = 1; axes < 8; ++axes) {
+    for (const auto& [presence_name, present] : inputs::kPresences) {
+      const std::size_t n = kCounts[turn % std::size(kCounts)];
+      const inputs::Input& input = kInputs[turn / 2 % std::size(kInputs)];
+      const NamedFilter filter = filters(n)[turn++ % filters(1).size()];
+      ChangingWorld world{
+          .name = fmt::format("{}, {}, {}, axes {}", input.name, filter.name, presence_name, axes),
+          .filter = filter.filter,
+          .frames = framesWith(input, n, kFrames, present)};
+      world.periodic = middleOf(input.boxes(n, 0, 1 + n), axes);
+      for (auto& boxes : world.frames) {
+        for (Aabb& box : boxes) box = wrapped(box, world.periodic);
+      }
+      check(world);
+      if (HasFatalFailure() || IsSkipped()) return;
+    }
+  }
+}
+
+// Few images at first, then seven of every body: the algorithm starts anew with more of them.
+TEST_P(EveryAlgorithmInChangingWorlds, FindsPairsOfManyImagesThatAppearAtOnce) {
+  ChangingWorld world{.name = "into a corner", .filter = {}, .frames = {}};
+  world.periodic = {{0, 0, 0}, {10, 10, 10}};
+  for (const float corner : {4.0F, 9.5F, 4.0F, 9.5F, 0.0F}) {
+    std::vector<Aabb>& boxes = world.frames.emplace_back();
+    inputs::Random random(7, 0);
+    for (int body = 0; body < 60; ++body) {
+      const inputs::Vec3 at = {corner + random.uniform(0, 0.4F), corner + random.uniform(0, 0.4F),
+                               corner + random.uniform(0, 0.4F)};
+      boxes.push_back(inputs::boxAt(at, {1, 1, body % 7 == 0 ? 30.0F : 1.0F}));
+    }
+  }
+  check(world);
 }
 
 TEST_P(EveryAlgorithmInChangingWorlds, FollowsFiltersThatChangeAmongManyBodies) {

@@ -214,11 +214,12 @@ class TestRun {
 /// Whether an answer has all right pairs, and no false pairs.
 inline testing::AssertionResult isRight(PairRuns answer, const std::vector<Pair>& right,
                                         const Frame& frame, float margin = 0,
-                                        const CollisionFilter& filter = {}) {
+                                        const CollisionFilter& filter = {},
+                                        const PeriodicBox& periodic = {}) {
   const PairRun right_run = right;
   // The digest is much quicker, and sufficient if no extra pairs are allowed.
   if (margin == 0 && digest(answer) == digest({&right_run, 1})) return testing::AssertionSuccess();
-  const FrameDifference difference = findDifference(answer, right, frame, margin, filter);
+  const FrameDifference difference = findDifference(answer, right, frame, margin, filter, periodic);
   if (!difference.isMismatch()) return testing::AssertionSuccess();
   auto failure = testing::AssertionFailure()
                  << mismatchText(difference) << " of " << right.size() << " pairs";

@@ -63,8 +63,8 @@ TEST(Sweep, EqualsBruteForceOnRandomSizes) {
 TEST(Sweep, FindsNoMorePairsThanAskedFor) {
   const std::vector<Aabb> boxes = inputs::identical(400, 0, 1);
   constexpr std::size_t kPairs = 400 * 399 / 2;
-  EXPECT_EQ(sweptPairs(boxes, {}, kPairs).size(), kPairs);
-  EXPECT_THROW(sweptPairs(boxes, {}, kPairs - 1), InputError);
+  EXPECT_EQ(sweptPairs(boxes, {}, {}, kPairs).size(), kPairs);
+  EXPECT_THROW(sweptPairs(boxes, {}, {}, kPairs - 1), InputError);
   Oracle oracle(std::size_t{1} << 30, kPairs - 1);
   for (int pass = 0; pass < 2; ++pass) {  // an incomplete answer is not cached
     EXPECT_THROW(oracle.pairDigest(boxes), InputError);
@@ -147,6 +147,7 @@ TEST(Oracle, AnswersForTheFilterItIsGiven) {
   const CollisionFilter none(std::vector<BodyGroups>(3), LayerMatrix());
   EXPECT_EQ(oracle.pairs(boxes).size(), 2U);
   EXPECT_EQ(oracle.pairs(boxes, none).size(), 0U);
+  EXPECT_EQ(oracle.pairs(boxes, {}, {{0, 0, 0}, {1, 1, 1}}).size(), 3U) << "in a periodic world";
   EXPECT_EQ(oracle.pairDigest(boxes, none).count, 0U);
   EXPECT_EQ(oracle.pairDigest(boxes).count, 2U);
 }

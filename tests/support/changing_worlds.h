@@ -28,6 +28,7 @@ struct ChangingWorld {
   std::vector<std::vector<Aabb>> frames;
   std::optional<Aabb> bounds = {};  ///< world bounds of the scene; by default of all boxes
   std::vector<CollisionFilter> filters = {};  ///< of each frame, if they change
+  PeriodicBox periodic = {};
 
   [[nodiscard]] const CollisionFilter& filterOf(std::size_t frame) const {
     return filters.empty() ? filter : filters[frame];

@@ -292,7 +292,8 @@ class CompactingAdapter final : public Adapter {
 }  // namespace
 
 bool isChangingWorld(const SceneInfo& scene) {
-  return !scene.all_present || !scene.filter.wantsAll() || scene.filter_changes;
+  return !scene.all_present || !scene.filter.wantsAll() || scene.filter_changes ||
+         scene.periodic.repeats();
 }
 
 std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm) {

@@ -144,7 +144,8 @@ Json toJson(const SceneInfo& scene) {
           {"frames", scene.frames},
           {"world", {scene.world.min, scene.world.max}},
           {"all_present", scene.all_present},
-          {"filter_changes", scene.filter_changes}};
+          {"filter_changes", scene.filter_changes},
+          {"periodic", {scene.periodic.min, scene.periodic.max}}};
 }
 
 SceneInfo sceneFrom(const Json& json) {
@@ -156,6 +157,8 @@ SceneInfo sceneFrom(const Json& json) {
                   .filter_changes = json.at("filter_changes").get<bool>()};
   json.at("world").at(0).get_to(scene.world.min);
   json.at("world").at(1).get_to(scene.world.max);
+  json.at("periodic").at(0).get_to(scene.periodic.min);
+  json.at("periodic").at(1).get_to(scene.periodic.max);
   return scene;
 }
 

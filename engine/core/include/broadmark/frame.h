@@ -11,6 +11,7 @@
 #include "broadmark/aabb.h"
 #include "broadmark/collision_filter.h"
 #include "broadmark/large_array.h"
+#include "broadmark/periodic_box.h"
 
 namespace broadmark {
 
@@ -29,6 +30,9 @@ struct SceneInfo {
   CollisionFilter filter = {};  ///< of the initial pose, and of all frames unless filter_changes
   /// Layers and tags of bodies may change from frame to frame; their worlds and the matrix do not.
   bool filter_changes = false;
+  /// If the world is periodic, all boxes are wrapped(), and bodies overlap if any of their images
+  /// do.
+  PeriodicBox periodic = {};
 
   friend bool operator==(const SceneInfo&, const SceneInfo&) = default;
 };

@@ -10,6 +10,7 @@
 #include "broadmark/aabb.h"
 #include "broadmark/collision_filter.h"
 #include "broadmark/pair.h"
+#include "broadmark/periodic_box.h"
 
 namespace broadmark {
 
@@ -23,8 +24,10 @@ struct PairDigest {
 };
 PairDigest digest(PairRuns);
 
-/// All overlapping wanted pairs, ascending, by testing all pairs of bodies: O(n²).
-std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& = {});
+/// All overlapping wanted pairs, ascending, by testing all pairs of bodies: O(n²). In a periodic
+/// world the boxes must be wrapped().
+std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& = {},
+                                  const PeriodicBox& = {});
 
 /// No limit.
 inline constexpr std::size_t kUnlimitedPairs = std::numeric_limits<std::size_t>::max();
@@ -32,6 +35,6 @@ inline constexpr std::size_t kUnlimitedPairs = std::numeric_limits<std::size_t>:
 /// The same pairs by an exact sweep within strips of the second axis: O(n log n + candidates).
 /// Tested against bruteForcePairs. Throws InputError if there are more than `max_pairs` pairs.
 std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {},
-                             std::size_t max_pairs = kUnlimitedPairs);
+                             const PeriodicBox& = {}, std::size_t max_pairs = kUnlimitedPairs);
 
 }  // namespace broadmark

@@ -128,7 +128,7 @@ class CaseRun {
   bool failed_ = false;  ///< a failure or a limit ended some pass: see reason_
   Status status_ = Status::ok;
   std::string reason_;
-  CollisionFilter filter_;  ///< of the current scene
+  SceneInfo scene_;  ///< the current one
   ChangeDetector change_detector_;
   EventAccumulator accumulated_;  ///< the pairs that result from the events
   std::uint64_t changed_count_ = 0;

@@ -17,8 +17,8 @@
 
 namespace broadmark {
 
-/// Computes correct answers, and caches them within a budget. The key is the hash of boxes and
-/// filter: two scenes may share an oracle, and equal frames share an answer.
+/// Computes correct answers, and caches them within a budget. The key is the hash of boxes, filter
+/// and periodic box: two scenes may share an oracle, and equal frames share an answer.
 class Oracle {
  public:
   /// `max_pairs`: the limit of pairs per frame.
@@ -29,8 +29,10 @@ class Oracle {
   // Both throw InputError beyond the limit of pairs.
 
   /// The overlapping wanted pairs of these boxes, ascending; valid until the next call.
-  std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
-  PairDigest pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
+  std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {},
+                              const PeriodicBox& periodic = {});
+  PairDigest pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter = {},
+                        const PeriodicBox& periodic = {});
 
  private:
   struct Answer {
@@ -38,7 +40,8 @@ class Oracle {
     std::optional<std::vector<Pair>> pairs;  ///< nullopt if beyond the budget
   };
   /// With `with_pairs`, the pairs are in the answer, or else in scratch_.
-  Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter, bool with_pairs);
+  Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter,
+               const PeriodicBox& periodic, bool with_pairs);
 
   std::map<HashValue, Answer> answers_;
   std::vector<Pair> scratch_;
@@ -78,6 +81,7 @@ std::string mismatchText(const FrameDifference&);
 /// Compares an answer with the correct pairs (ascending) of these boxes. `margin` as in
 /// BroadPhase::margin().
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, const Frame& frame,
-                               float margin = 0, const CollisionFilter& = {});
+                               float margin = 0, const CollisionFilter& = {},
+                               const PeriodicBox& = {});
 
 }  // namespace broadmark
