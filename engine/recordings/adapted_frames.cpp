@@ -1,5 +1,7 @@
 #include "broadmark/recordings/adapted_frames.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -8,7 +10,9 @@
 #include <string_view>
 #include <utility>
 
+#include "broadmark/error.h"
 #include "broadmark/hasher.h"
+#include "broadmark/recordings/periodic_frames.h"
 #include "broadmark/recordings/swept_frames.h"
 #include "broadmark/recordings/widened_frames.h"
 
@@ -42,14 +46,27 @@ const std::array kAdapters{
                  },
                  [](std::unique_ptr<IndexedFrames> frames,
                     const std::string& value) -> std::unique_ptr<IndexedFrames> {
-                   return std::make_unique<WidenedFrames>(std::move(frames), distanceOf(value));
+                   return widened(std::move(frames), distanceOf(value));
                  }},
+    FrameAdapter{"periodic", kPeriodicSuffix, periodicScene, periodicFrames},
 };
 
 /// The value of the adapter's option; null without it.
 const std::string* valueOf(const FrameAdapter& adapter, const ParameterValues& reading) {
   const auto value = reading.find(std::string(adapter.option));
   return value == reading.end() ? nullptr : &value->second;
+}
+
+/// The options for frames of this scene: a periodic world needs no option.
+ParameterValues optionsFor(const SceneInfo& scene, ParameterValues reading) {
+  if (scene.periodic.repeats()) reading.try_emplace("periodic", kStatedPeriodicBox);
+  if (reading.contains("swept") && reading.contains("periodic")) {
+    throw InputError(fmt::format(
+        "{}: --swept: a body that crosses a periodic boundary jumps: give --swept or --periodic, "
+        "not both",
+        scene.name));
+  }
+  return reading;
 }
 
 }  // namespace
@@ -76,16 +93,18 @@ ParameterValues adaptersIn(ParameterValues reading) {
 
 std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
                                        const ParameterValues& reading) {
+  const ParameterValues options = optionsFor(frames->scene(), reading);
   for (const FrameAdapter& adapter : kAdapters) {
-    const std::string* value = valueOf(adapter, reading);
+    const std::string* value = valueOf(adapter, options);
     if (value != nullptr) frames = adapter.wrap(std::move(frames), *value);
   }
   return frames;
 }
 
 SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading) {
+  const ParameterValues options = optionsFor(scene, reading);
   for (const FrameAdapter& adapter : kAdapters) {
-    const std::string* value = valueOf(adapter, reading);
+    const std::string* value = valueOf(adapter, options);
     if (value != nullptr) scene = adapter.scene(std::move(scene), *value);
   }
   return scene;
@@ -102,7 +121,7 @@ std::string unadaptedName(std::string name, const ParameterValues& reading) {
 std::string adaptedHash(std::string hash, const ParameterValues& reading) {
   for (const FrameAdapter& adapter : kAdapters) {
     const std::string* value = valueOf(adapter, reading);
-    if (value == nullptr) continue;
+    if (value == nullptr || *value == kStatedPeriodicBox) continue;  // part of the hash already
     // A flag has no value of its own.
     const std::string text =
         std::string(adapter.option) + (*value == "on" ? "" : "=" + *value) + " ";

@@ -81,7 +81,8 @@ std::vector<std::string> boxRecordingExtensions() {
 }
 
 bool fitsAabbs(const SceneInfo& scene) {
-  return scene.all_present && scene.filter.wantsAll() && !scene.filter_changes;
+  return scene.all_present && scene.filter.wantsAll() && !scene.filter_changes &&
+         !scene.periodic.repeats();
 }
 
 std::string_view recordingExtension(const SceneInfo& scene) {
@@ -92,7 +93,7 @@ void requireHolds(const std::filesystem::path& path, const SceneInfo& scene) {
   const RecordingFormat& format = formatOf(path.extension().string());
   if (format.extension == kBroadmarkExtension || fitsAabbs(scene)) return;
   throw InputError(fmt::format(
-      "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
+      "{}: {} recordings hold no absent bodies, layers, worlds, tags or periodic boxes: {} ones do",
       path.string(), format.extension, kBroadmarkExtension));
 }
 

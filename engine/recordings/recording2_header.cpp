@@ -16,8 +16,9 @@ namespace broadmark {
 namespace {
 
 constexpr std::string_view kSchema = "broadmark-recording/2";
-/// With filter changes, which older readers would ignore.
+// With what older readers would ignore.
 constexpr std::string_view kFilterChangesSchema = "broadmark-recording/2.1";
+constexpr std::string_view kPeriodicSchema = "broadmark-recording/2.2";
 
 /// A per-body array that a header may announce: its element size, and the access to a filter's
 /// array and to a body's value.
@@ -102,6 +103,14 @@ Aabb worldIn(const JsonFields& fields) {
   return world;
 }
 
+PeriodicBox periodicIn(const JsonFields& fields) {
+  try {
+    return parsePeriodic(fields.text("periodic"));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", fields.path("periodic"), error.what()));
+  }
+}
+
 LayerMatrix matrixIn(const JsonFields& fields) {
   LayerMatrix matrix;
   for (const Json& pair : fields.array("colliding_layers")) {
@@ -134,12 +143,18 @@ std::string recordingFault(const Aabb& box, bool all_present) {
 std::vector<std::byte> recording2Header(const SceneInfo& scene, const RecordingOrigin& origin) {
   requireNames(scene);
   Json json;
-  json["schema"] = scene.filter_changes ? kFilterChangesSchema : kSchema;
+  json["schema"] = scene.periodic.repeats() ? kPeriodicSchema
+                   : scene.filter_changes   ? kFilterChangesSchema
+                                            : kSchema;
   json["name"] = scene.name;
   json["object_type"] = scene.object_type;
   json["objects"] = scene.objects;
   json["frames"] = scene.frames;
   json["world"] = boxJson(scene.world);
+  if (scene.periodic.repeats()) {
+    json["periodic"] = periodicText(scene.periodic);
+    json["filter_changes"] = scene.filter_changes;
+  }
   json["all_present"] = scene.all_present;
   json["colliding_layers"] = matrixJson(scene.filter.matrix());
   Json& groups = json["groups"] = Json::array();
@@ -170,10 +185,13 @@ std::vector<std::byte> recording2Header(const SceneInfo& scene, const RecordingO
 Recording2Header::Recording2Header(std::string_view text, const std::string& name)
     : json_(parseJson(text, name)), fields_(json_, name) {
   const std::string schema = fields_.text("schema");
-  filter_changes_ = schema == kFilterChangesSchema;
-  if (schema != kSchema && !filter_changes_) {
-    throw InputError(fmt::format("{}: '{}' or '{}' is expected, not '{}'", fields_.path("schema"),
-                                 kSchema, kFilterChangesSchema, onOneLine(schema)));
+  is_periodic_ = schema == kPeriodicSchema;
+  filter_changes_ =
+      is_periodic_ ? fields_.boolean("filter_changes") : schema == kFilterChangesSchema;
+  if (schema != kSchema && !filter_changes_ && !is_periodic_) {
+    throw InputError(fmt::format("{}: '{}', '{}' or '{}' is expected, not '{}'",
+                                 fields_.path("schema"), kSchema, kFilterChangesSchema,
+                                 kPeriodicSchema, onOneLine(schema)));
   }
 }
 
@@ -184,7 +202,8 @@ SceneInfo Recording2Header::scene() const {
           .frames = fields_.integer<std::uint32_t>("frames"),
           .world = worldIn(fields_),
           .all_present = fields_.boolean("all_present"),
-          .filter_changes = filter_changes_};
+          .filter_changes = filter_changes_,
+          .periodic = is_periodic_ ? periodicIn(fields_) : PeriodicBox()};
 }
 
 RecordingOrigin Recording2Header::origin() const {

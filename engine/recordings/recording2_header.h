@@ -142,6 +142,7 @@ class Recording2Header {
 
   Json json_;
   JsonFields fields_;
+  bool is_periodic_ = false;
   bool filter_changes_ = false;
 };
 

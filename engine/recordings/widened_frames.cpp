@@ -1,6 +1,3 @@
-// Widened boxes for arbitrary frames. If the changed bodies are known, the cost of a frame is
-// theirs.
-
 #include "broadmark/recordings/widened_frames.h"
 
 #include <algorithm>
@@ -8,6 +5,7 @@
 #include <utility>
 
 #include "broadmark/exact_sum.h"
+#include "broadmark/recordings/mapped_frames.h"
 #include "recording_file.h"
 
 namespace broadmark {
@@ -37,36 +35,11 @@ SceneInfo widenedScene(SceneInfo scene, double distance) {
   return scene;
 }
 
-WidenedFrames::WidenedFrames(std::unique_ptr<IndexedFrames> frames, double distance)
-    : AdaptedFrames(std::move(frames)), distance_(distance) {
-  scene_ = widenedScene(std::move(scene_), distance);
-  changed_.reserve(scene_.objects);
-}
-
-std::span<const Aabb> WidenedFrames::readBoxes(std::uint32_t index) {
-  const std::optional<std::uint32_t> last = std::exchange(last_, {});  // in case reading fails
-  // Change detection needs the widened boxes of the frame before.
-  if (index > 0 && last != index - 1) widenAll(readSource(index - 1));
-  const Frame frame = readSource(index);
-  changed_.clear();
-  if (index == 0 || !reports_changes_) {
-    widenAll(frame);
-  } else {
-    for (const std::uint32_t body : *frame.changed) {
-      const Aabb box = widenedBox(frame.boxes[body], distance_);
-      if (sameBits(box, boxes_[body])) continue;  // a small step may be lost in rounding
-      boxes_[body] = box;
-      changed_.push_back(body);
-    }
-  }
-  last_ = index;
-  return boxes_;
-}
-
-void WidenedFrames::widenAll(const Frame& frame) {
-  for (std::size_t body = 0; body < boxes_.size(); ++body) {
-    boxes_[body] = widenedBox(frame.boxes[body], distance_);
-  }
+std::unique_ptr<IndexedFrames> widened(std::unique_ptr<IndexedFrames> frames, double distance) {
+  SceneInfo scene = widenedScene(frames->scene(), distance);
+  return std::make_unique<MappedFrames>(
+      std::move(frames), std::move(scene),
+      [distance](const Aabb& box) { return widenedBox(box, distance); });
 }
 
 }  // namespace broadmark

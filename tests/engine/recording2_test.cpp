@@ -255,6 +255,29 @@ TEST(Recording2, FiltersThatChangeNeedAReaderThatKnowsThem) {
               HasSubstr(".broadmark ones do"));
 }
 
+TEST(Recording2, KeepsAPeriodicBox) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "a.broadmark";
+  const Frames frames = changingFrames(kSlots, 3, 0, true);
+  SceneInfo scene = changingSceneOf(frames, true);
+  scene.periodic = {{0.1, 0, -5}, {10, 0, 1e9}};
+  EXPECT_EQ(recordingExtension(scene), ".broadmark");
+  write(path, scene, frames);
+  EXPECT_THAT(readTextFile(path), HasSubstr("\"broadmark-recording/2.2\""));
+  EXPECT_EQ(Recording2Reader(path).scene(), scene);
+
+  const auto all = inputs::changingFilters({}, kSlots, 3, inputs::filter_changes::half, 1);
+  FrameList source = listed(scene, frames, all);
+  RecordingWriter writer(path, source.scene());
+  writer.write(source.rewind());
+  while (const auto frame = source.next()) writer.write(*frame);
+  writer.finish();
+  Recording2Reader reader(path);
+  EXPECT_EQ(reader.scene().periodic, scene.periodic);
+  EXPECT_TRUE(reader.scene().filter_changes);
+  EXPECT_EQ(*reader.at(3).filter, all[3]);
+}
+
 TEST(Recording2, WritesOnlyFiltersThatTheSceneAnnounces) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.broadmark";

@@ -117,11 +117,12 @@ TEST(WidenedBox, RoundsOutwardWhatIsLostOtherwise) {
 }
 
 TEST(WidenedFrames, NameThemselvesAndWidenTheirWorld) {
-  WidenedFrames frames(std::make_unique<MadeFrames>(std::vector<Boxes>{{onX(0, 1)}}, true), 2);
-  EXPECT_EQ(frames.scene().name, "Made widened");
-  EXPECT_EQ(frames.scene().world, cube(-1, 1));
-  EXPECT_EQ(frames.rewind().boxes[0], (Aabb{{-1, -1, -1, 0}, {2, 2, 2, 0}}));
-  EXPECT_FALSE(frames.next());
+  const auto frames =
+      widened(std::make_unique<MadeFrames>(std::vector<Boxes>{{onX(0, 1)}}, true), 2);
+  EXPECT_EQ(frames->scene().name, "Made widened");
+  EXPECT_EQ(frames->scene().world, cube(-1, 1));
+  EXPECT_EQ(frames->rewind().boxes[0], (Aabb{{-1, -1, -1, 0}, {2, 2, 2, 0}}));
+  EXPECT_FALSE(frames->next());
 }
 
 TEST(WidenedFrames, ListTheBodiesWhoseWidenedBoxesChange) {
@@ -130,18 +131,18 @@ TEST(WidenedFrames, ListTheBodiesWhoseWidenedBoxesChange) {
                                    {onX(0, step), onX(5, 6), kEmptyBox},
                                    {onX(0, 1), onX(6, 7), kEmptyBox},
                                    {onX(0, 1), onX(6, 7), onX(8, 9)}};
-  WidenedFrames frames(std::make_unique<MadeFrames>(made, true), 1e9);
-  EXPECT_THAT(*frames.rewind().changed, IsEmpty());
-  EXPECT_THAT(*frames.next()->changed, ElementsAre(2)) << "body 0's step is lost in rounding";
-  EXPECT_THAT(*frames.next()->changed, IsEmpty()) << "so is a unit at this distance";
-  EXPECT_THAT(*frames.next()->changed, ElementsAre(2));
-  EXPECT_THAT(*frames.at(1).changed, ElementsAre(2)) << "backwards";
-  EXPECT_THAT(*frames.at(3).changed, ElementsAre(2)) << "after a leap";
-  WidenedFrames near(std::make_unique<MadeFrames>(made, true), 0.5);
-  EXPECT_THAT(*near.at(2).changed, ElementsAre(0, 1));
-  WidenedFrames unknown(std::make_unique<MadeFrames>(made, false), 0.5);
+  const auto frames = widened(std::make_unique<MadeFrames>(made, true), 1e9);
+  EXPECT_THAT(*frames->rewind().changed, IsEmpty());
+  EXPECT_THAT(*frames->next()->changed, ElementsAre(2)) << "body 0's step is lost in rounding";
+  EXPECT_THAT(*frames->next()->changed, IsEmpty()) << "so is a unit at this distance";
+  EXPECT_THAT(*frames->next()->changed, ElementsAre(2));
+  EXPECT_THAT(*frames->at(1).changed, ElementsAre(2)) << "backwards";
+  EXPECT_THAT(*frames->at(3).changed, ElementsAre(2)) << "after a leap";
+  const auto near = widened(std::make_unique<MadeFrames>(made, true), 0.5);
+  EXPECT_THAT(*near->at(2).changed, ElementsAre(0, 1));
+  const auto unknown = widened(std::make_unique<MadeFrames>(made, false), 0.5);
   for (std::uint32_t index : {0, 2, 1, 3}) {
-    const Frame frame = unknown.at(index);
+    const Frame frame = unknown->at(index);
     EXPECT_FALSE(frame.changed);
     for (std::size_t body = 0; body < 3; ++body) {
       EXPECT_EQ(frame.boxes[body], widenedBox(made[index][body], 0.5));
@@ -175,8 +176,9 @@ TEST(WidenedFrames, PairsAreThoseNoFartherApart) {
         if (gap <= distance) expected.push_back({a, b});
       }
     }
-    WidenedFrames frames(std::make_unique<MadeFrames>(std::vector<Boxes>{boxes}, true), distance);
-    EXPECT_EQ(bruteForcePairs(frames.rewind().boxes), expected) << seed;
+    const auto frames =
+        widened(std::make_unique<MadeFrames>(std::vector<Boxes>{boxes}, true), distance);
+    EXPECT_EQ(bruteForcePairs(frames->rewind().boxes), expected) << seed;
   }
 }
 

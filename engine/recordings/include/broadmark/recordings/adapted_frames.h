@@ -47,8 +47,9 @@ class AdaptedFrames : public IndexedFrames {
 };
 
 // `reading`: reading options that are not at their defaults, as in results. Each adapter is named
-// after its option, and they apply in the order of the list in adapted_frames.cpp: first "swept",
-// then "widen". Other options are ignored.
+// after its option, and they apply in the order of the list in adapted_frames.cpp: "swept",
+// "widen", "periodic". Other options are ignored. Boxes of a source that is periodic are wrapped in
+// any case.
 
 /// The options among these that change boxes.
 ParameterValues adaptersIn(ParameterValues reading);
@@ -59,6 +60,7 @@ std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
                                        const ParameterValues& reading);
 
 /// The scene of the adapted frames of this scene: "FreeFall swept", "FreeFall swept widened".
+/// Throws InputError likewise.
 SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading);
 /// The name of the scene whose adapted name this is.
 std::string unadaptedName(std::string name, const ParameterValues& reading);

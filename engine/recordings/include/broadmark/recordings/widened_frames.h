@@ -1,13 +1,10 @@
 // Boxes grown on every side, for pairs that are closer than a distance.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <span>
 #include <string_view>
 
 #include "broadmark/frame.h"
-#include "broadmark/recordings/adapted_frames.h"
 
 namespace broadmark {
 
@@ -26,15 +23,6 @@ inline constexpr std::string_view kWidenedSuffix = " widened";
 SceneInfo widenedScene(SceneInfo, double distance);
 
 /// A source with widened boxes.
-class WidenedFrames final : public AdaptedFrames {
- public:
-  WidenedFrames(std::unique_ptr<IndexedFrames> frames, double distance);
-
- private:
-  std::span<const Aabb> readBoxes(std::uint32_t index) override;
-  void widenAll(const Frame& frame);
-
-  double distance_;
-};
+std::unique_ptr<IndexedFrames> widened(std::unique_ptr<IndexedFrames> frames, double distance);
 
 }  // namespace broadmark
