@@ -165,6 +165,14 @@ CLI::Option* addFlag(CLI::App& app, const std::string& name, bool& target, const
   return app.add_flag(name, target, doc)->default_function([&] { return target ? "true" : ""; });
 }
 
+/// An option whose value may be left out, and is then `implied`: --NAME or --NAME=VALUE.
+CLI::Option* addFlagWithValue(CLI::App& app, const std::string& name, const std::string& implied,
+                              std::string& target, const std::string& doc) {
+  return app.add_flag(fmt::format("{}{{{}}}", name, implied), target, doc)
+      ->type_name("[=BOX]")
+      ->default_function([&] { return target; });
+}
+
 CLI::Option* addPositive(CLI::App& app, const std::string& name, const std::string& type,
                          double& target, const std::string& doc) {
   const auto set = [&target, name](const std::string& text) {
@@ -400,6 +408,11 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
         throw InputError(fmt::format("{}: {}", name, error.what()));
       }
     };
+    if (parameter.name == "periodic") {
+      added.push_back(
+          addFlagWithValue(app, name, std::string(kStatedPeriodicBox), options.periodic, doc));
+      return;
+    }
     std::string type = "NUMBER";
     if (std::holds_alternative<Choice*>(parameter.value)) type = parameterRange(parameter);
     if (std::holds_alternative<std::string*>(parameter.value)) type = "NAME";

@@ -9,6 +9,7 @@
 #include "broadmark/json_fields.h"
 #include "broadmark/names.h"
 #include "command_line/session_options.h"
+#include "command_line/usage.h"
 #include "request/former_names.h"
 #include "request/sweep.h"
 
@@ -43,7 +44,8 @@ Json valueOf(const std::string& text) {
 
 /// Parses the value of an option; `text` has one line per repetition of the option.
 Json valueOf(const CLI::Option& option, const std::string& text) {
-  if (option.get_items_expected_max() == 0) return true;
+  if (option.get_items_expected_max() == 0)
+    return takesOptionalValue(option) ? Json(text) : Json(true);
   if (option.get_items_expected_max() == 1) return valueOf(text);
   const std::string key = keyOf(option);
   if (!isRepeated(key)) {
@@ -136,7 +138,7 @@ std::vector<std::string> argumentsOf(std::string_view text, const std::string& n
     const CLI::Option& option = *options[static_cast<std::size_t>(found - keys.begin())];
     if (option.count() > 0 || value.is_null() || value == false) continue;
     const std::string path = fields.path(key.c_str());
-    if (option.get_items_expected_max() == 0) {
+    if (option.get_items_expected_max() == 0 && !(takesOptionalValue(option) && value != true)) {
       if (value != true) throw InputError(path + ": true or false is expected");
       arguments.push_back(option.get_name());
       continue;

@@ -47,6 +47,7 @@ std::string entryText(const std::string& name, const std::string& description, s
 std::string entryText(const CLI::Option& option, std::size_t width) {
   std::string name = fmt::format("{}", fmt::join(namesOf(option), ", "));
   if (takesValue(option) && !option.get_positional()) name += ' ' + option.get_type_name();
+  if (takesOptionalValue(option)) name += option.get_type_name();
   return entryText(name, descriptionOf(option), width);
 }
 
@@ -83,6 +84,10 @@ std::vector<std::string> namesOf(const CLI::Option& option) {
 }
 
 bool takesValue(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+bool takesOptionalValue(const CLI::Option& option) {
+  return !takesValue(option) && !option.get_type_name().empty();
+}
 
 bool takesList(const CLI::Option& option) {
   return option.get_type_name().find("[,") != std::string::npos;

@@ -37,6 +37,8 @@ bool isShown(const CLI::Option&);
 /// Names of an option with dashes; of a positional argument its type.
 std::vector<std::string> namesOf(const CLI::Option&);
 bool takesValue(const CLI::Option&);
+/// Whether the option is a flag that may have a value: "--periodic[=BOX]".
+bool takesOptionalValue(const CLI::Option&);
 /// Whether the value may be a list with commas.
 bool takesList(const CLI::Option&);
 /// The description with what the option needs and excludes, and its default.

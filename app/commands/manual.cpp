@@ -24,7 +24,7 @@ std::string optionEntry(const CLI::Option& option) {
   const std::string names = plain(fmt::format("{}", fmt::join(namesOf(option), ", ")));
   const bool has_name = !option.get_positional();
   std::string head = fmt::format("\\f{}{}\\fR", has_name ? 'B' : 'I', names);
-  if (has_name && takesValue(option)) {
+  if (has_name && !option.get_type_name().empty()) {
     head += fmt::format(" \\fI{}\\fR", plain(option.get_type_name()));
   }
   return fmt::format(".TP\n{}\n{}\n", head, plain(descriptionOf(option)));

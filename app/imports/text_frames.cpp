@@ -10,6 +10,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/exact_sum.h"
+#include "broadmark/recordings/periodic_frames.h"
 #include "broadmark/scenes/simulation.h"
 #include "imports/files.h"
 
@@ -39,6 +40,7 @@ class TextFrames final : public IndexedFrames {
     if (isEmpty(scene_.world)) scene_.world = {};
     scene_.objects = static_cast<std::uint32_t>(ids_.size());
     scene_.frames = static_cast<std::uint32_t>(locations_.size() - 1);
+    scene_.periodic = format_->periodic();
     boxes_.resize(ids_.size());
     setFilter();
     summarise(summary);
@@ -208,6 +210,34 @@ class TextFrames final : public IndexedFrames {
 };
 
 }  // namespace
+
+void TextFormat::setPeriodic(const LineReader& lines, const Cell& cell,
+                             const std::array<bool, 3>& repeats) {
+  const bool is_stated = repeats[0] || repeats[1] || repeats[2];
+  if (option_.empty() && is_stated) {
+    addOnce(summary_.left_out, "pairs across periodic boundaries (use --periodic)");
+  }
+  if (option_ != kStatedPeriodicBox) return;
+  PeriodicBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!repeats[axis]) continue;
+    box.min[axis] = cell.origin[axis];
+    box.max[axis] = cell.origin[axis] + cell.edges[axis][axis];
+    if (!box.repeats(axis)) lines.fail("--periodic: the periodic box has no extent");
+    for (int other = 0; other < 3; ++other) {
+      if (other != axis && (cell.edges[axis][other] != 0 || cell.edges[other][axis] != 0)) {
+        lines.fail("--periodic: slanted periodic boxes are not supported");
+      }
+    }
+  }
+  if (periodic_ && *periodic_ != box) {
+    lines.fail(fmt::format(
+        "--periodic: the periodic box is {}, but {} in the frames before: one for all is expected",
+        periodicText(box), periodicText(*periodic_)));
+  }
+  periodic_ = box;
+  if (is_stated) addOnce(summary_.used, "periodic box " + periodicText(box));
+}
 
 std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
                                               std::unique_ptr<TextFormat> format,

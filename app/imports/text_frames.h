@@ -33,6 +33,12 @@ struct TextFrame {
   std::vector<TextRow> rows;
 };
 
+/// A parallelepiped: a corner, and the three edges from it.
+struct Cell {
+  std::array<double, 3> origin{};
+  std::array<std::array<double, 3>, 3> edges{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+};
+
 /// Reads the frames of files of one format. Files are opened again to read their frames once more,
 /// in any order.
 class TextFormat {
@@ -48,9 +54,22 @@ class TextFormat {
   [[nodiscard]] virtual bool keepsOrder() const { return true; }
   /// What was understood of the frames read so far.
   [[nodiscard]] const ImportSummary& summary() const { return summary_; }
+  /// The periodic box that all frames state, if it is asked for.
+  [[nodiscard]] PeriodicBox periodic() const { return periodic_.value_or(PeriodicBox()); }
 
  protected:
+  /// `option`: as in ReadingOptions.
+  explicit TextFormat(const std::string& periodic_option = "") : option_(periodic_option) {}
+
+  /// Applies the periodic boundaries that a frame states. Throws InputError if they are asked for
+  /// but slanted, or others than in the frame before.
+  void setPeriodic(const LineReader&, const Cell&, const std::array<bool, 3>& repeats);
+
   ImportSummary summary_;
+
+ private:
+  std::string option_;
+  std::optional<PeriodicBox> periodic_;
 };
 
 /// Opens the frames of all files, concatenated. Bodies are numbered by ascending id over all files;
@@ -63,12 +82,6 @@ std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem:
 /// Throws InputError if 32-bit floats cannot represent it.
 Aabb boxAround(const LineReader&, const std::array<double, 3>& centre,
                const std::array<double, 3>& half);
-
-/// A parallelepiped: a corner, and the three edges from it.
-struct Cell {
-  std::array<double, 3> origin{};
-  std::array<std::array<double, 3>, 3> edges{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-};
 
 /// Meaning of the columns of a line that describes a particle, a ball.
 struct ParticleColumns {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "broadmark/parameters.h"
+#include "broadmark/recordings/periodic_frames.h"
 #include "broadmark/recordings/widened_frames.h"
 
 namespace broadmark {
@@ -12,6 +13,7 @@ namespace broadmark {
 struct ReadingOptions : Parametrised {
   bool swept = false;
   double widen = 0;
+  std::string periodic;
   Choice format{"auto", {"auto", "csv", "xyz", "lammps", "ply", "obj", "stl", "gltf"}};
   bool strict = false;
   Choice elements{"triangles", {"vertices", "edges", "triangles", "all"}};
@@ -31,6 +33,10 @@ struct ReadingOptions : Parametrised {
            "grow each box by half of this distance on every side, rounded outward: pairs of bodies "
            "no farther apart than this distance on any axis",
            &widen, 0, kMaxWidening});
+    visit({"periodic",
+           "also report pairs across the boundaries of a periodic box: the one that the source "
+           "states, or as in =0:10,0:10,- (LOW:HIGH along x, y and z; - where it is not periodic)",
+           &periodic});
     visit(
         {"format", "imported files: their format, instead of recognising it by content", &format});
     visit({"strict", "imported files: fail if anything in them would be left out", &strict});

@@ -166,7 +166,8 @@ Cell boundedCell(LineReader& lines, bool is_slanted) {
 
 class DumpFormat final : public imports::TextFormat {
  public:
-  explicit DumpFormat(double radius) : radius_(radius) {}
+  explicit DumpFormat(const ReadingOptions& options)
+      : TextFormat(options.periodic), radius_(options.radius) {}
 
   [[nodiscard]] bool keepsOrder() const override { return false; }
 
@@ -250,10 +251,13 @@ class DumpFormat final : public imports::TextFormat {
                       "expected",
                       imports::quoted(word)));
     }
-    const bool is_periodic =
-        std::ranges::any_of(words, [](std::string_view word) { return word.starts_with('p'); });
-    if (is_periodic) addOnce(summary_.left_out, "pairs across periodic boundaries (p)");
-    return is_general ? generalCell(lines) : boundedCell(lines, is_slanted);
+    const Cell cell = is_general ? generalCell(lines) : boundedCell(lines, is_slanted);
+    std::array<bool, 3> repeats{};
+    for (std::size_t axis = 0; axis < std::min<std::size_t>(words.size(), 3); ++axis) {
+      repeats[axis] = words[axis].starts_with('p');
+    }
+    if (!words.empty()) setPeriodic(lines, cell, repeats);
+    return cell;
   }
 
   double radius_;
@@ -269,7 +273,7 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
                                     const ReadingOptions& options,
                                     imports::ImportSummary& summary) {
   summary.format = "LAMMPS dump";
-  return imports::openTextFrames(files, std::make_unique<DumpFormat>(options.radius), "Particles",
+  return imports::openTextFrames(files, std::make_unique<DumpFormat>(options), "Particles",
                                  summary);
 }
 
@@ -279,7 +283,7 @@ SourceKind kind() {
   return {.what = "LAMMPS dumps (.dump, .lammpstrj)",
           .import = FileImport{.formats = {"lammps"},
                                .extensions = {".dump", ".lammpstrj", ".lammpsdump"},
-                               .options = {"radius"},
+                               .options = {"radius", "periodic"},
                                .recognises = recognises,
                                .open = open}};
 }

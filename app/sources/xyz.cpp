@@ -15,6 +15,7 @@ namespace broadmark::sources::xyz {
 namespace {
 
 using imports::addOnce;
+using imports::Cell;
 using imports::LineReader;
 using imports::ParticleColumns;
 using imports::TextFrame;
@@ -42,9 +43,11 @@ Token tokenOf(std::string_view text, std::string_view ends) {
   return {text.substr(0, end), text.substr(end)};
 }
 
+using Values = std::map<std::string, std::string>;
+
 /// The keys of a comment in lower case, and their values. A comment may be any text.
-std::map<std::string, std::string> valuesIn(std::string_view comment) {
-  std::map<std::string, std::string> values;
+Values valuesIn(std::string_view comment) {
+  Values values;
   std::string_view rest = imports::trimmed(comment);
   while (!rest.empty()) {
     const Token key = tokenOf(rest, " \t=");
@@ -78,7 +81,10 @@ ParticleColumns plainColumns() {
 
 class XyzFormat final : public imports::TextFormat {
  public:
-  explicit XyzFormat(double radius) : radius_(radius) {}
+  explicit XyzFormat(const ReadingOptions& options)
+      : TextFormat(options.periodic),
+        radius_(options.radius),
+        is_periodic_(options.periodic == kStatedPeriodicBox) {}
 
   bool read(LineReader& lines, TextFrame& frame) override {
     do {
@@ -114,10 +120,49 @@ class XyzFormat final : public imports::TextFormat {
       has_lattice_ = true;
       addOnce(summary_.used, "lattice " + lattice->second);
     }
-    const auto periodic = values.find("pbc");
-    if (periodic != values.end() && periodic->second.find_first_of("Tt1") != std::string::npos) {
-      addOnce(summary_.left_out, "pairs across periodic boundaries (pbc)");
+    describeBoundaries(lines, values);
+  }
+
+  void describeBoundaries(const LineReader& lines, const Values& values) {
+    const auto lattice = values.find("lattice");
+    const auto boundaries = values.find("pbc");
+    // A lattice alone means boundaries that are all periodic.
+    std::array<bool, 3> repeats{true, true, true};
+    if (boundaries != values.end()) {
+      std::vector<std::string_view> words;
+      imports::splitWords(boundaries->second, words);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        // One word may stand for all axes.
+        const std::string_view word = words.empty() ? "F" : words[std::min(axis, words.size() - 1)];
+        repeats[axis] = word.find_first_of("Tt1") == 0;
+      }
+    } else if (lattice == values.end() || !is_periodic_) {
+      return;
     }
+    Cell cell;
+    if (is_periodic_) {
+      if (lattice == values.end()) lines.fail("--periodic: pbc needs a Lattice");
+      const std::vector<double> edges = numbersIn(lines, *lattice, 9);
+      for (std::size_t i = 0; i < 9; ++i) cell.edges[i / 3][i % 3] = edges[i];
+      if (const auto origin = values.find("origin"); origin != values.end()) {
+        std::ranges::copy(numbersIn(lines, *origin, 3), cell.origin.begin());
+      }
+    }
+    setPeriodic(lines, cell, repeats);
+  }
+
+  static std::vector<double> numbersIn(const LineReader& lines, const Values::value_type& value,
+                                       std::size_t count) {
+    std::vector<std::string_view> words;
+    imports::splitWords(value.second, words);
+    if (words.size() != count) {
+      lines.fail(
+          fmt::format("{}: {} numbers are expected, not {}", value.first, count, words.size()));
+    }
+    std::vector<double> numbers;
+    for (const std::string_view word : words)
+      numbers.push_back(lines.realNumber(word, value.first));
+    return numbers;
   }
 
   /// Finds the columns in "NAME:TYPE:WIDTH:…".
@@ -174,6 +219,7 @@ class XyzFormat final : public imports::TextFormat {
   }
 
   double radius_;
+  bool is_periodic_;  ///< the stated boundaries are asked for
   ParticleColumns columns_;
   std::string comment_;  ///< that `columns_` are from
   bool is_described_ = false;
@@ -210,8 +256,7 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
                                     const ReadingOptions& options,
                                     imports::ImportSummary& summary) {
   summary.format = "XYZ";
-  return imports::openTextFrames(files, std::make_unique<XyzFormat>(options.radius), "Particles",
-                                 summary);
+  return imports::openTextFrames(files, std::make_unique<XyzFormat>(options), "Particles", summary);
 }
 
 }  // namespace
@@ -220,7 +265,7 @@ SourceKind kind() {
   return {.what = "particles (.xyz, .extxyz)",
           .import = FileImport{.formats = {"xyz"},
                                .extensions = {".xyz", ".extxyz"},
-                               .options = {"radius"},
+                               .options = {"radius", "periodic"},
                                .recognises = recognises,
                                .open = open}};
 }

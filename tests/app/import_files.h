@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "broadmark/files.h"
+#include "broadmark/recordings/adapted_frames.h"
 #include "engine/helpers.h"
 #include "sources/make_source.h"
 

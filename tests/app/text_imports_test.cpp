@@ -368,6 +368,62 @@ TEST_F(TextImports, WhatIsNotReadOfLammps) {
   EXPECT_THAT(two.summary.warnings, ElementsAre(HasSubstr("no ids")));
 }
 
+// ---- Periodic boundaries.
+
+TEST_F(TextImports, PeriodicBoxesAreTakenIfAskedFor) {
+  const std::string atoms = "id x y z\n1 9.75 5 5\n2 10.5 5 -4\n";
+  const auto periodic = [&](const std::string& name, const std::string& text) {
+    Source read = source(name, text, {{"radius", "0.5"}, {"periodic", "source"}});
+    EXPECT_THAT(read.summary.left_out, IsEmpty());
+    EXPECT_EQ(read.reference.reading.at("periodic"), "source");
+    EXPECT_EQ(read.reference.scene.periodic, read.imported->scene().periodic);
+    const auto frames = adapted(std::move(read.imported), read.reference.reading);
+    EXPECT_EQ(frames->scene(), read.reference.scene);
+    EXPECT_THAT(
+        boxesOf(*frames, 0),
+        ElementsAre(ballAt(9.75F, 5, 5), testing::AnyOf(ballAt(.5F, 5, -4), ballAt(.5F, 5, 6))))
+        << text;
+    return periodicText(frames->scene().periodic);
+  };
+  EXPECT_EQ(periodic("a.dump", dump("pp pp ff\n0 10\n0 10\n0 10", atoms)), "0:10,0:10,-");
+  EXPECT_EQ(periodic("a.dump", dump("xy xz yz pp ss ff\n0 10 0\n0 10 0\n0 10 0", atoms)),
+            "0:10,-,-");
+  EXPECT_EQ(periodic("a.dump", dump("abc origin pp pp pp\n10 0 0 0\n0 10 0 0\n0 0 10 0", atoms)),
+            "0:10,0:10,0:10");
+  const std::string lattice = "2\nLattice=\"10 0 0 0 8 0 0 0 10\" ";
+  const std::string particles = "Properties=species:S:1:pos:R:3\nH 9.75 5 5\nH 10.5 5 -4\n";
+  EXPECT_EQ(periodic("a.xyz", lattice + particles), "0:10,0:8,0:10") << "all, if pbc is not stated";
+  EXPECT_EQ(periodic("a.xyz", lattice + "pbc=\"T F F\" " + particles), "0:10,-,-");
+  EXPECT_EQ(periodic("a.xyz", lattice + "Origin=\"0 -1 0\" pbc=\"T T F\" " + particles),
+            "0:10,-1:7,-");
+}
+
+TEST_F(TextImports, PeriodicBoundariesThatAreNotHonouredAreSaid) {
+  const std::string atoms = "id x y z\n1 9.75 5 5\n2 10.5 5 -4\n";
+  const std::string frame = dump("pp pp ff\n0 10\n0 10\n0 10", atoms);
+  const auto wrong = [&](const std::string& name, const std::string& text) {
+    return inputErrorOf([&] {
+      static_cast<void>(source(name, text, {{"radius", "0.5"}, {"periodic", "source"}}));
+    });
+  };
+  EXPECT_THAT(source("a.dump", frame, {{"radius", "0.5"}}).summary.left_out,
+              ElementsAre(HasSubstr("--periodic")));
+  EXPECT_THAT(
+      source("a.dump", frame, {{"radius", "0.5"}, {"periodic", "0:10,-,-"}}).summary.left_out,
+      IsEmpty());
+  EXPECT_THAT(wrong("a.dump", frame + dump("pp pp ff\n0 11\n0 10\n0 10", atoms)),
+              HasSubstr("the periodic box is 0:11,0:10,-, but 0:10,0:10,- in the frames before"));
+  EXPECT_THAT(wrong("a.dump", dump("xy xz yz pp pp pp\n0 12 2\n0 10 0\n0 10 0", atoms)),
+              HasSubstr("slanted"));
+  EXPECT_THAT(wrong("a.dump", dump("pp pp pp\n0 0\n0 10\n0 10", atoms)), HasSubstr("no extent"));
+  EXPECT_THAT(wrong("a.dump", dump("ff ff ff\n0 10\n0 10\n0 10", atoms)),
+              HasSubstr("states no periodic box"));
+  const std::string particles = "Properties=species:S:1:pos:R:3\nH 9.75 5 5\n";
+  EXPECT_THAT(wrong("a.xyz", "1\npbc=\"T T T\" " + particles), HasSubstr("Lattice"));
+  EXPECT_THAT(wrong("a.xyz", "1\nLattice=\"1 2 3\" " + particles), HasSubstr("9 numbers"));
+  EXPECT_THAT(wrong("a.xyz", "1\n" + particles), HasSubstr("states no periodic box"));
+}
+
 // ---- What was understood.
 
 TEST_F(TextImports, WhatWasUnderstoodIsSaid) {

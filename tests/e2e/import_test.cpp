@@ -130,6 +130,51 @@ TEST_F(Import, AnySourceCanBeWidened) {
   }
 }
 
+TEST_F(Import, PairsAcrossPeriodicBoundariesAreFound) {
+  // The first two atoms meet across the x faces, in the second frame also the last two across z.
+  const auto frame = [](const std::string& atoms) {
+    return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n4\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n"
+           "0 10\nITEM: ATOMS id x y z radius\n" +
+           atoms;
+  };
+  const std::string first = frame("1 .2 5 5 .5\n2 9.8 5 5 .5\n3 5 2 5 .5\n4 5 2 .25 .5\n");
+  writeFile(file("a.dump"), first + first +
+                                frame("1 10.2 5 5 .5\n2 9.8 5 5 .5\n3 5 2 9.25 .5\n"
+                                      "4 5 2 .25 .5\n"));
+  const auto pairs_with = [&](Arguments call) {
+    for (const char* more : {"--headless", "--algorithm", "bf,kd,tide,columns,dbvt-d", "--check",
+                             "full", "--json", "p.json"})
+      call.emplace_back(more);
+    runQuietly(call);
+    for (const Json& result : readJson(file("p.json"))["cases"]) {
+      EXPECT_THAT(result["status"], testing::AnyOf("ok", "unsupported")) << result["algorithm"];
+    }
+    return pairsOf(file("p.json"));
+  };
+  EXPECT_THAT(pairs_with({"a.dump"}), ElementsAre(0, 1));
+  EXPECT_THAT(pairs_with({"a.dump", "--periodic"}), ElementsAre(1, 2));
+  EXPECT_THAT(pairs_with({"a.dump", "--periodic", "--answer", "events"}), ElementsAre(0, 1));
+  EXPECT_THAT(pairs_with({"a.dump", "--periodic=0:10,-,-"}), ElementsAre(1, 1));
+  EXPECT_THAT(pairs_with({"a.dump", "--periodic", "--widen", "0.1"}), ElementsAre(1, 2));
+
+  // Recordings keep the box, and results the option.
+  EXPECT_EQ(run({"import", "a.dump", "--periodic", "-o", "a"}).status, 0);
+  EXPECT_THAT(pairs_with({"a.broadmark"}), ElementsAre(1, 2));
+  pairs_with({"a.dump", "--periodic"});
+  const Json result = readJson(file("p.json"))["cases"][0];
+  EXPECT_EQ(result["recording"]["reading"], Json::parse(R"({"periodic": "source"})"));
+  runQuietly({"--headless", "p.json", "--case", result["id"], "--json", "again.json"});
+  EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], result["recording"]);
+
+  // A scene in a box of its own; and what cannot be.
+  pairs_with({"brownian", "--objects", "300", "--frames", "3", "--periodic=-2:2,-2:2,-2:2"});
+  expectRefusal({"--headless", "brownian", "--periodic"}, {"Brownian", "--periodic=0:10"});
+  expectRefusal({"--headless", "brownian", "--periodic=1:0,-,-"}, {"--periodic", "'1:0,-,-'"});
+  expectRefusal({"--headless", "a.broadmark", "--periodic=0:1,-,-"}, {"is periodic already"});
+  expectRefusal({"--headless", "a.dump", "--periodic", "--swept"}, {"--swept", "not both"});
+  expectRefusal({"import", "a.dump", "--periodic", "-o", "a.aabbs"}, {"periodic boxes"});
+}
+
 TEST_F(Import, MakesRecordings) {
   writeFile(file("boxes.csv"), kCsv);
   EXPECT_EQ(run({"import", "boxes.csv", "-o", "boxes"}).status, 0);

@@ -46,11 +46,18 @@ inline void readAllFrames(const SourceKind& kind, const std::filesystem::path& p
 
 /// Imports the bytes as a file of this kind.
 inline void importThrough(const SourceKind& kind, const std::uint8_t* data, std::size_t size,
-                          double radius = 0) {
-  ReadingOptions options;
-  options.radius = radius;
+                          const ReadingOptions& options = {}) {
   withFile(data, size,
            [&](const std::filesystem::path& path) { readAllFrames(kind, path, options); });
+}
+
+/// Imports the bytes as particles: with a radius of their own, or one that is said, and with or
+/// without their periodic box.
+inline void particlesThrough(const SourceKind& kind, const std::uint8_t* data, std::size_t size) {
+  ReadingOptions options;
+  options.radius = static_cast<double>(size % 2);
+  if (size / 2 % 2 == 1) options.periodic = kStatedPeriodicBox;
+  importThrough(kind, data, size, options);
 }
 
 }  // namespace broadmark::fuzz
