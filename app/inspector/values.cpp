@@ -154,8 +154,8 @@ void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   const bool is_pair = bodies.size() == 2;
   values["pair"] = is_pair ? pairName({bodies[0], bodies[1]}) : "";
   if (!is_pair || !snapshot || bodies[1] >= snapshot->boxes->size()) return;
-  const Aabb& a = (*snapshot->boxes)[bodies[0]];
-  const Aabb& b = (*snapshot->boxes)[bodies[1]];
+  const auto [a, b] = nearestImages((*snapshot->boxes)[bodies[0]], (*snapshot->boxes)[bodies[1]],
+                                    snapshot->scene.periodic);
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const AxisRelation relation = axisRelation(axis, a, b);
     values[fmt::format("pair.gap.{}", kAxes[axis])] = fmt::format("{}", relation.gap);

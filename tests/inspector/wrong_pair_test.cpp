@@ -82,13 +82,13 @@ TEST(PairTracks, TellSinceWhenTheyOverlap) {
   Trail other{.body = 2, .first = 10, .boxes = {box(0, 1), box(4, 5), box(3, 4)}};
   other.boxes.push_back(box(1, 2));
   other.boxes.push_back(box(1, 2));
-  EXPECT_EQ((PairTrails{still, other}.overlapStart()), 13U);
+  EXPECT_EQ((PairTrails{still, other, {}}.overlapStart()), 13U);
   EXPECT_FALSE(movedAt(other, 0));
   EXPECT_TRUE(movedAt(other, 3));
   EXPECT_FALSE(movedAt(other, 4));
   other.boxes.back() = box(7, 8);
-  EXPECT_EQ((PairTrails{still, other}.overlapStart()), std::nullopt);
-  EXPECT_EQ((PairTrails{still, still}.overlapStart()), 10U);
+  EXPECT_EQ((PairTrails{still, other, {}}.overlapStart()), std::nullopt);
+  EXPECT_EQ((PairTrails{still, still, {}}.overlapStart()), 10U);
 }
 
 TEST(PairTracks, TellSinceWhenABodyIsAbsent) {

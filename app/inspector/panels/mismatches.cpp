@@ -221,8 +221,9 @@ class MismatchesPanel final : public Panel {
       ui.paragraph("Click a pair above, or select two bodies.");
       return;
     }
-    const BoxPair pair{
-        {bodies[0], bodies[1]}, (*snapshot->boxes)[bodies[0]], (*snapshot->boxes)[bodies[1]]};
+    const auto [a, b] = nearestImages((*snapshot->boxes)[bodies[0]], (*snapshot->boxes)[bodies[1]],
+                                      snapshot->scene.periodic);
+    const BoxPair pair{{bodies[0], bodies[1]}, a, b};
     ui.paragraph(view.answer().pair);
     const std::string filtered = filterText(snapshot->scene.filter, pair.bodies);
     if (!filtered.empty()) ui.coloured(ui.theme.warning, filtered);
@@ -255,7 +256,7 @@ class MismatchesPanel final : public Panel {
     if (trails.size() != 2 || trails[0].body != pair.bodies.a || trails[1].body != pair.bodies.b) {
       return;
     }
-    const PairTrails trail{trails[0], trails[1]};
+    const PairTrails trail{trails[0], trails[1], progress->snapshot->scene.periodic};
     ui.heading("History");
     const auto overlap_start = trail.overlapStart();
     if (!overlap_start) {

@@ -147,7 +147,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double max_gap = 0;
     for (std::size_t i = 0; i < frames; ++i) {
-      const double gap = std::abs(axisRelation(axis, trail.a.boxes[i], trail.b.boxes[i]).gap);
+      const double gap = std::abs(trail.relationAt(i, axis).gap);
       if (std::isfinite(gap)) max_gap = std::max(max_gap, gap);
     }
     const float top = origin.y + static_cast<float>(axis) * row;
@@ -156,7 +156,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
     plainRect({origin.x + label, zero}, {origin.x + label + width, zero + 1}, ui.theme.faint, 0.4F);
     for (std::size_t i = 0; i < frames; ++i) {
       if (isEmpty(trail.a.boxes[i]) || isEmpty(trail.b.boxes[i])) continue;
-      const AxisRelation relation = axisRelation(axis, trail.a.boxes[i], trail.b.boxes[i]);
+      const AxisRelation relation = trail.relationAt(i, axis);
       const double share = max_gap > 0 ? relation.gap / max_gap : 0;
       const float extent = static_cast<float>(share) * (row / 2 - 2 * unit);
       // At least 1.5 units high.
@@ -190,7 +190,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrails& trail) {
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (isEmpty(trail.a.boxes[at]) || isEmpty(trail.b.boxes[at])) break;
-    const AxisRelation relation = axisRelation(axis, trail.a.boxes[at], trail.b.boxes[at]);
+    const AxisRelation relation = trail.relationAt(at, axis);
     text += fmt::format("\n{}: {} {}", kAxes[axis], kRelations.nameOf(relation.type),
                         exactText(std::abs(static_cast<float>(relation.gap))));
   }

@@ -288,8 +288,8 @@ bool RunThread::advanceTrack(AlgorithmTrack& track, const Frame& frame) {
   // At the target publishSnapshots() caches the answer.
   if (&track == shownTrack() && frame.index != target() && track.isAt(frame.index) &&
       !isAnswerCached(frame.index)) {
-    const CachedAnswer answer = answerOf(track, frame, current_.check, std::move(difference),
-                                         frame.filterIn(provider_->scene()), oracle_);
+    const CachedAnswer answer =
+        answerOf(track, frame, current_.check, std::move(difference), provider_->scene(), oracle_);
     if (track.isAt(frame.index)) cache_.insert(track.spec().number, frame.index, answer);
   }
   publishTrack(track);

@@ -32,8 +32,9 @@ CachedAnswer oracleAnswer(const SnapshotRequest& request, const Frame& frame, Or
   if (request.cache != nullptr) {
     if (auto cached = request.cache->find(0, frame.index)) return std::move(*cached);
   }
+  const SceneInfo& scene = request.provider.scene();
   const std::span<const Pair> pairs =
-      oracle.pairs(frame.boxes, frame.filterIn(request.provider.scene()));
+      oracle.pairs(frame.boxes, frame.filterIn(scene), scene.periodic);
   CachedAnswer answer{.pairs = {pairs.begin(), pairs.end()}, .checked = true};
   if (request.cache != nullptr) request.cache->insert(0, frame.index, answer);
   return answer;
@@ -82,7 +83,7 @@ std::uint32_t countPresent(std::span<const Aabb> boxes) {
 }
 
 CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool checked,
-                      std::optional<FrameDifference> difference, const CollisionFilter& filter,
+                      std::optional<FrameDifference> difference, const SceneInfo& scene,
                       Oracle& oracle) {
   CachedAnswer answer{.pairs = track.answer(),
                       .checked = checked,
@@ -90,7 +91,8 @@ CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool checked,
                       .oracle_pairs = {},
                       .counters = track.report().counters};
   if (answer.difference && !answer.matchesOracle()) {
-    const std::span<const Pair> oracle_pairs = oracle.pairs(frame.boxes, filter);
+    const std::span<const Pair> oracle_pairs =
+        oracle.pairs(frame.boxes, frame.filterIn(scene), scene.periodic);
     answer.oracle_pairs.assign(oracle_pairs.begin(), oracle_pairs.end());
   }
   return answer;
@@ -117,8 +119,7 @@ std::shared_ptr<const Snapshot> captureSnapshot(const SnapshotRequest& request, 
   if (track != nullptr && track->isAt(request.frame)) {
     std::optional<FrameDifference> difference;
     if (request.check) difference = track->check(frame, oracle);
-    answer = answerOf(*track, frame, request.check, std::move(difference), snapshot->scene.filter,
-                      oracle);
+    answer = answerOf(*track, frame, request.check, std::move(difference), snapshot->scene, oracle);
     if (request.structure && track->isAt(request.frame)) {
       snapshot->structure = std::make_shared<RecordedDrawing>(track->structure());
     }

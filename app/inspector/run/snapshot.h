@@ -84,8 +84,7 @@ std::shared_ptr<const Snapshot> captureSnapshot(const SnapshotRequest& request, 
 /// Reads the answer of a track that is at this frame. `checked`: it was compared with the oracle's,
 /// with this difference if the algorithm can be checked.
 CachedAnswer answerOf(AlgorithmTrack& track, const Frame& frame, bool checked,
-                      std::optional<FrameDifference> difference, const CollisionFilter& filter,
-                      Oracle& oracle);
+                      std::optional<FrameDifference> difference, const SceneInfo&, Oracle& oracle);
 
 struct PairComparison {
   std::vector<Pair> first_only;   ///< ascending

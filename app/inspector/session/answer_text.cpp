@@ -47,8 +47,8 @@ std::string pairText(const Snapshot& snapshot, const std::string& owner,
   if (selection.size() != 2 || selection[1] >= snapshot.boxes->size()) return "";
   const Pair pair{selection[0], selection[1]};
   const std::vector<Aabb>& boxes = *snapshot.boxes;
-  const bool right =
-      overlaps(boxes[pair.a], boxes[pair.b]) && snapshot.scene.filter.wanted(pair.a, pair.b);
+  const bool right = overlaps(boxes[pair.a], boxes[pair.b], snapshot.scene.periodic) &&
+                     snapshot.scene.filter.wanted(pair.a, pair.b);
   const char* oracle = right ? "finds it" : "does not find it";
   const std::string name = pairName(pair);
   if (owner.empty()) return fmt::format("{}: the oracle {}", name, oracle);

@@ -72,9 +72,17 @@ std::string filterText(const CollisionFilter& filter, Pair pair);
 struct PairTrails {
   const Trail& a;
   const Trail& b;
+  const PeriodicBox& periodic;
 
   [[nodiscard]] std::size_t size() const { return std::min(a.boxes.size(), b.boxes.size()); }
-  [[nodiscard]] bool overlapsAt(std::size_t i) const { return overlaps(a.boxes[i], b.boxes[i]); }
+  [[nodiscard]] bool overlapsAt(std::size_t i) const {
+    return overlaps(a.boxes[i], b.boxes[i], periodic);
+  }
+  /// The relation of their nearest images.
+  [[nodiscard]] AxisRelation relationAt(std::size_t i, std::size_t axis) const {
+    const auto [near_a, near_b] = nearestImages(a.boxes[i], b.boxes[i], periodic);
+    return axisRelation(axis, near_a, near_b);
+  }
   /// First frame of the overlap that lasts up to the last frame; nothing if the boxes do not
   /// overlap there.
   [[nodiscard]] std::optional<std::uint32_t> overlapStart() const;
