@@ -26,6 +26,8 @@ MAGIC = b"BRDMARK2"
 SCHEMA = "broadmark-recording/2"
 #: With layers and tags that change.
 FILTER_CHANGES_SCHEMA = "broadmark-recording/2.1"
+#: Of a periodic world.
+PERIODIC_SCHEMA = "broadmark-recording/2.2"
 ALIGNMENT = 32
 LAYERS = 32
 NO_TAG = 0xFFFFFFFF
@@ -69,6 +71,7 @@ class ChangingRecording:
     all_present: bool  #: no body is ever absent
     groups: Groups  #: of the initial pose, and of all frames unless filter_changes
     filter_changes: bool  #: layers and tags change from frame to frame
+    periodic: str | None  #: the periodic box, as in --periodic=0:10,0:10,-
     source: str | None  #: the file that it was converted from
     scene_parameters: dict[str, Any] | None  #: as in the sidecar of a baked recording
     _content: npt.NDArray[np.uint8] = dataclasses.field(repr=False)
@@ -191,8 +194,15 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
     require(offset <= size and offset % ALIGNMENT == 0, "the header states a wrong size of itself")
     try:
         header = json.loads(content[START.itemsize : offset].tobytes())
-        filter_changes = header["schema"] == FILTER_CHANGES_SCHEMA
-        require(filter_changes or header["schema"] == SCHEMA, f"is not a {SCHEMA}")
+        schema = header["schema"]
+        require(
+            schema in (SCHEMA, FILTER_CHANGES_SCHEMA, PERIODIC_SCHEMA),
+            f"is not a {SCHEMA}, nor 2.1 or 2.2",
+        )
+        is_periodic = schema == PERIODIC_SCHEMA
+        filter_changes = schema == FILTER_CHANGES_SCHEMA
+        if is_periodic:
+            filter_changes = bool(header["filter_changes"])
         bodies, last = int(header["objects"]), int(header["frames"])
         world = np.array(header["world"], np.float32).reshape(2, 3)
         group_names = [str(group) for group in header["groups"]]
@@ -201,6 +211,7 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
             name=str(header["name"]),
             object_type=str(header["object_type"]),
             all_present=bool(header["all_present"]),
+            periodic=str(header["periodic"]) if is_periodic else None,
             source=header.get("source"),
             scene_parameters=header.get("scene_parameters"),
         )

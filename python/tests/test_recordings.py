@@ -196,6 +196,18 @@ def test_filters_that_change_are_read_and_written(tmp_path: pathlib.Path) -> Non
     assert {case["status"] for case in json.loads(results.read_text())["cases"]} == {"ok"}
 
 
+def test_a_periodic_box_is_read(tmp_path: pathlib.Path) -> None:
+    particles = tmp_path / "a.xyz"
+    lattice = 'Lattice="2 0 0 0 2 0 0 0 2" pbc="T F T"'
+    particles.write_text(f"2\n{lattice}\nH 0.1 1 1\nH 1.9 1 1\n")
+    path = tmp_path / "a.broadmark"
+    call("import", str(particles), "--radius", "0.2", "--periodic", "-o", str(path), "--quiet")
+    recording = broadmark.read_recording(path)
+    assert isinstance(recording, broadmark.ChangingRecording)
+    assert (recording.periodic, recording.filter_changes) == ("0:2,-,0:2", False)
+    np.testing.assert_allclose(recording.boxes[0, :, 0, 0], [1.9, 1.7], rtol=1e-6)
+
+
 def test_only_layers_and_tags_may_change(tmp_path: pathlib.Path) -> None:
     boxes = random_boxes(2, 3)
     first = broadmark.Groups(layers=np.array([1, 0, 0]))
