@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <map>
+
 #include "broadmark/cores.h"
 #include "broadmark/results/results.h"
 #include "e2e/end_to_end.h"
@@ -75,6 +77,25 @@ TEST_F(Machine, NoSharedMemory) {
                             "'mount -t tmpfs -o ro none /dev/shm && exec \"$0\" \"$@\"' \"$@\"; }",
                         "run");
 }
+
+#ifdef __x86_64__
+TEST_F(Machine, OldProcessors) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers do not run in qemu";
+  if (shell("command -v qemu-x86_64") != 0) GTEST_SKIP() << "no qemu-x86_64";
+  const std::map<std::string, std::string> isas = {
+      {"Conroe", "sse2"}, {"SandyBridge", "sse2"}, {"Haswell", "avx2"}};
+  for (const auto& [processor, isa] : isas) {
+    const std::string emulated = fmt::format(
+        "run() {{ program=$(command -v \"$1\"); shift; qemu-x86_64 -cpu {} \"$program\" "
+        "--in-process "
+        "\"$@\" 2>/dev/null; }}",
+        processor);
+    expectOrdinaryResults(emulated, "run");
+    const Results results = parseResults(readFile(file("r.json")), "r.json");
+    EXPECT_EQ(isaName(results.cases[1].isa), isa) << processor;
+  }
+}
+#endif
 
 TEST_F(Machine, DecimalCommas) {
   if (shell("localedef -i de_DE -f UTF-8 ./de_DE.UTF-8") != 0) {
