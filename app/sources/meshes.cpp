@@ -1,7 +1,6 @@
-// Meshes as boxes of their elements: one file per frame, or an animation in a single file.
+// Meshes as boxes of their elements: one file per frame.
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <algorithm>
 
 #include "imports/element_frames.h"
 #include "imports/mesh_format.h"
@@ -10,14 +9,15 @@
 namespace broadmark::sources::meshes {
 
 SourceKind kind() {
-  const std::vector<std::string> extensions = {".ply", ".obj", ".stl", ".gltf", ".glb"};
-  return {.what = fmt::format("meshes and animations ({})", fmt::join(extensions, ", ")),
-          .import = FileImport{.formats = {"ply", "obj", "stl", "gltf"},
-                               .extensions = extensions,
-                               .options = {"elements", "keep", "frame_rate", "animation"},
+  static const std::vector<std::string> formats = {"ply", "obj", "stl"};
+  return {.what = "meshes (.ply, .obj, .stl)",
+          .import = FileImport{.formats = formats,
+                               .extensions = {".ply", ".obj", ".stl"},
+                               .options = {"elements", "keep"},
                                .recognises =
                                    [](const imports::FileStart& start) {
-                                     return !imports::meshFormat(start).empty();
+                                     return std::ranges::count(formats,
+                                                               imports::meshFormat(start)) > 0;
                                    },
                                .open = imports::openElements}};
 }

@@ -54,7 +54,7 @@ TEST_F(Sources, KindsAreDescribed) {
     EXPECT_TRUE(texts.insert(kind.what).second) << kind.what;
     EXPECT_THAT(sourceKindsText(), HasSubstr(kind.what));
   }
-  EXPECT_THAT(texts, SizeIs(9));
+  EXPECT_THAT(texts, SizeIs(10));
 }
 
 TEST_F(Sources, ImportedFiles) {
@@ -84,10 +84,14 @@ TEST_F(Sources, AnythingCanBeSwept) {
 TEST_F(Sources, ReadingOptionsMustMeanSomething) {
   ReadingOptions reading;
   reading.frame_rate = 5;
-  std::vector<PlanEntry> entries;
-  entries.push_back(entryOf("freefall", {.reading = reading}));
-  EXPECT_THAT(inputErrorOf([&] { requireReadingUsed(reading, entries); }),
-              HasSubstr("--frame-rate"));
+  // A sequence of meshes has no rate.
+  const std::string mesh = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const std::string& name : {std::string("freefall"), mesh}) {
+    std::vector<PlanEntry> entries;
+    entries.push_back(entryOf(name, {.reading = reading}));
+    EXPECT_THAT(inputErrorOf([&] { requireReadingUsed(reading, entries); }),
+                HasSubstr("--frame-rate"));
+  }
 }
 
 TEST_F(Sources, BuiltInScenes) {
