@@ -39,8 +39,8 @@ class Results:
     """The cases of one or several results files.
 
     `cases` has a row per case, indexed by the case's number. The columns are those of the program's
-    `--csv`, and `machine`, `file`, `complete` (all requested repetitions ran, or the status ended the
-    case) and `warnings`. Times are in seconds. Unknown values are missing (NaN).
+    `--csv`, and `machine`, `started` (the start of the run, UTC), `file`, `complete` (all requested
+    repetitions ran, or the status ended the case) and `warnings`. Times are in seconds. Unknown values are missing (NaN).
 
     `details` holds the remaining data of each case, by its number: parameters, conditions, counters,
     differences, and times as arrays.
@@ -87,10 +87,18 @@ class Results:
 _SHAPE_ERRORS = (KeyError, TypeError, IndexError, AttributeError, ValueError, OverflowError)
 
 
-def read_results(*paths: str | os.PathLike[str]) -> Results:
+class NotResultsError(InputError):
+    """The file is no results file, but may be a good file of another kind."""
+
+
+def read_results(
+    *paths: str | os.PathLike[str],
+    skip: Callable[[str | os.PathLike[str], NotResultsError], bool] = lambda _path, _error: False,
+) -> Results:
     """Reads results files of any version, JSON or JSON Lines.
 
-    Raises InputError for other files. An incomplete last line means that the run was ended while
+    Raises InputError for other files, NotResultsError for those of another kind unless `skip` allows
+    to leave one out. An incomplete last line means that the run was ended while
     writing it: the lines before are read, and the file is in `partial`.
     """
     environments: list[dict[str, Any]] = []
@@ -98,7 +106,12 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
     rows: list[dict[str, Any]] = []
     files: list[dict[str, Any]] = []
     for path in paths:
-        document = _document(pathlib.Path(path))
+        try:
+            document = _document(pathlib.Path(path))
+        except NotResultsError as error:
+            if skip(path, error):
+                continue
+            raise
         try:
             files.append(_file_row(path, document))
         except TypeError as error:
@@ -110,7 +123,9 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
             try:
                 _check_lengths(case)
                 row = _row(case)
-                row["environment"] = environment_indices[case.get("environment", 0)]
+                number = case.get("environment", 0)
+                row["environment"] = environment_indices[number]
+                row["started"] = str(document.environments[number].get("started") or "")
             except _SHAPE_ERRORS as error:
                 raise InputError(
                     f"{path}: case {case.get('id', len(rows))!r}: does not match docs/results.md: "
@@ -167,7 +182,7 @@ def _document(path: pathlib.Path) -> _Document:
             except json.JSONDecodeError:  # a JSON document of many lines
                 head = _parsed(first + file.read())
             if not isinstance(head, dict) or head.get("schema") not in SCHEMAS:
-                raise InputError(f"{path}: not a results file: the schema is not {SCHEMAS[0]}")
+                raise NotResultsError(f"{path}: not a results file: the schema is not {SCHEMAS[0]}")
             if "cases" not in head:
                 return _from_lines(path, file, head.get("options", []))
     except (OSError, EOFError, zlib.error, RecursionError, *_SHAPE_ERRORS) as error:

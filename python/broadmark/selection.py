@@ -39,14 +39,8 @@ def read_selected(options: argparse.Namespace, may_be_empty: bool = False) -> Re
     may_be_empty = may_be_empty and not len(results.cases)
     for path in results.partial:
         print(f"{path}: partial: the run was not finished", file=sys.stderr)
-    cases = results.cases
-    if options.filter is not None and len(cases):
-        try:
-            results = results.select(cases["id"].str.contains(re.compile(options.filter)))
-        except re.error as error:
-            raise InputError(
-                f"--filter '{options.filter}': not a regular expression: {error}"
-            ) from None
+    if options.filter is not None and len(results.cases):
+        results = results.select(match_ids(results.cases["id"], options.filter))
     if options.machine is not None and len(results.cases):
         known = sorted(results.cases["machine"].unique())
         chosen = [name for name in known if options.machine in name]
@@ -73,6 +67,36 @@ def single_machine(results: Results) -> tuple[str, Results]:
         names = _quoted([name for name, _ in machines])
         raise InputError(f"results of {len(machines)} machines: choose one with --machine: {names}")
     return machines[0]
+
+
+def match_ids(ids: pd.Series, pattern: str) -> pd.Series:
+    """A mask of the ids that contain a match of the option --filter."""
+    try:
+        return ids.str.contains(re.compile(pattern))
+    except re.error as error:
+        raise InputError(f"--filter '{pattern}': not a regular expression: {error}") from None
+
+
+def add_case_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options that `match_cases` applies."""
+    parser.add_argument("--scene", metavar="NAME[,NAME…]", help="only these scenes")
+    parser.add_argument(
+        "--algorithm", metavar="ID[,ID…]", help="only these algorithms; patterns such as 'sap*'"
+    )
+    parser.add_argument("--objects", metavar="N[,N…]", help="only these numbers of bodies")
+
+
+def match_cases(cases: pd.DataFrame, options: argparse.Namespace) -> pd.Series:
+    """A mask of the cases selected by the options of `add_case_options`."""
+    mask = pd.Series(True, cases.index)
+    for option, column in (
+        (options.scene, "scene"),
+        (options.algorithm, "algorithm"),
+        (options.objects, "objects"),
+    ):
+        if option is not None:
+            mask &= match_names(cases[column].astype(str), option)
+    return mask
 
 
 def match_names(names: pd.Series, patterns: str) -> pd.Series:

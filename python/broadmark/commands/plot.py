@@ -8,8 +8,6 @@ from __future__ import annotations
 import argparse
 import sys
 
-import pandas as pd
-
 from broadmark import selection
 from broadmark.drawing import check_format, draw
 from broadmark.errors import InputError
@@ -26,18 +24,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="the image (.svg, .pdf, .png)"
     )
-    parser.add_argument("--scene", metavar="NAME[,NAME…]", help="only these scenes")
-    parser.add_argument(
-        "--algorithm", metavar="ID[,ID…]", help="only these algorithms; patterns such as 'sap*'"
-    )
-    parser.add_argument("--objects", metavar="N[,N…]", help="only these numbers of bodies")
+    selection.add_case_options(parser)
     parser.add_argument("--log", action="store_true", help="use logarithmic time axes")
 
 
 def main(options: argparse.Namespace) -> None:
     check_format(options.output)
     machine, results = selection.single_machine(selection.read_selected(options))
-    results = results.select(_selected(results.cases, options))
+    results = results.select(selection.match_cases(results.cases, options))
     if not len(results.cases):
         raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
     cases = timed_cases(results, log=options.log, note=machine)
@@ -48,15 +42,3 @@ def main(options: argparse.Namespace) -> None:
         print(f"cases without a time are not shown: {summary}", file=sys.stderr)
     draw([options.output], lambda: KINDS[options.kind](cases))
     print(f"written: {options.output}")
-
-
-def _selected(cases: pd.DataFrame, options: argparse.Namespace) -> pd.Series:
-    mask = pd.Series(True, cases.index)
-    for option, column in (
-        (options.scene, "scene"),
-        (options.algorithm, "algorithm"),
-        (options.objects, "objects"),
-    ):
-        if option is not None:
-            mask &= selection.match_names(cases[column].astype(str), option)
-    return mask
