@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import os
 import pathlib
-from collections.abc import Callable, Iterable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import matplotlib.style
+from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullFormatter
@@ -70,6 +72,33 @@ def draw(paths: Iterable[str | os.PathLike[str]], picture: Callable[[], Figure])
         for path, kind in formats.items():
             with atomic_write(path) as file:
                 figure.savefig(file, format=kind, metadata=FORMATS[kind])
+
+
+def draw_pages(
+    path: str | os.PathLike[str], pages: Sequence[tuple[str, Callable[[], Figure]]]
+) -> list[pathlib.Path]:
+    """Draws several figures, each with a name: as pages of a PDF, or in files of their own, named
+    PATH-NAME.svg, if there are several. Returns the files."""
+    path = pathlib.Path(path)
+    if check_format(path) == "pdf":
+        with (
+            matplotlib.style.context(["default", SETTINGS]),
+            atomic_write(path) as file,
+            PdfPages(file, metadata=FORMATS["pdf"]) as document,
+        ):
+            for _, picture in pages:
+                document.savefig(picture())
+        return [path]
+    paths = [path]
+    if len(pages) > 1:
+        names = [re.sub(r"[^\w.+-]+", "-", name).strip("-") for name, _ in pages]
+        names = [
+            name if names.count(name) == 1 else f"{name}-{i}" for i, name in enumerate(names, 1)
+        ]
+        paths = [path.with_name(f"{path.stem}-{name}{path.suffix}") for name in names]
+    for file_path, (_, picture) in zip(paths, pages):
+        draw([file_path], picture)
+    return paths
 
 
 @dataclass(frozen=True)
