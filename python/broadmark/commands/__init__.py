@@ -15,4 +15,5 @@ COMMANDS = [
     "figure3",
     "claims",
     "plot",
+    "history",
 ]
