@@ -24,6 +24,7 @@ from broadmark.drawing import check_format, draw_pages
 from broadmark.errors import InputError
 from broadmark.files import write_text
 from broadmark.history.commits import ordered_commits
+from broadmark.history.figure import page, pages
 from broadmark.history.history import History, history
 from broadmark.history.measures import TIME, measure_of
 from broadmark.history.tables import csv_text, json_text, text_table
@@ -144,9 +145,6 @@ def _share(name: str, text: str) -> float:
 
 
 def _draw(found: History, path: str) -> None:
-    # Imported here: the table needs no matplotlib.
-    from broadmark.history.figure import page, pages
-
     drawn = [(title, functools.partial(page, found, title, ids)) for title, ids in pages(found)]
     for written in draw_pages(path, drawn):
         print(f"written: {written}")

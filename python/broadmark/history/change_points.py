@@ -66,9 +66,15 @@ class Segments:
 class Detection:
     """How changes are detected."""
 
-    min_runs: int  #: the least number of values in a segment
+    min_runs: int  #: the least number of values in the first and the last segment
     margin: float  #: smaller relative changes are ignored
     tests: int = 1  #: the number of series in which a change may be claimed
+
+    @property
+    def min_passing(self) -> int:
+        """The least number of values in the other segments: disturbed runs that happen to follow each
+        other are no change."""
+        return self.min_runs + 2 if self.min_runs > 1 else 1
 
     def segments(self, values: Array, groups: npt.NDArray[np.int64]) -> Segments:
         """The segments of `values`. A change is possible only where `groups` changes."""
@@ -82,13 +88,45 @@ class Detection:
         if self.min_runs > 1:
             limited = _limited(values, self.min_runs, sigma)
         sums = _Sums(limited)
-        starts = _partition(sums, places, self.min_runs, sigma)
+        starts = self._partition(sums, places, sigma)
         while True:
             starts = self._eliminated(sums, values, starts, CHOICES * len(places) * self.tests)
-            moved = _moved(sums, starts, places, self.min_runs)
+            moved = self._moved(sums, starts, places)
             if moved == starts:
                 return _described(sums, starts)
             starts = moved  # which lowers the squared error, so that this ends
+
+    def _partition(self, sums: _Sums, places: npt.NDArray[np.int64], sigma: float) -> list[int]:
+        """The starts of the segments after the first with the least cost."""
+        penalty = 2 * math.log(sums.count) * sigma**2
+        begins = np.concatenate([[0], places])
+        best = np.full(len(begins), np.inf)  # least cost of everything before each begin
+        best[0] = -penalty
+        previous = np.zeros(len(begins), int)
+        for number, end in enumerate([*begins[1:], sums.count], 1):
+            least = self.min_runs if end == sums.count else self.min_passing
+            usable = max(int(np.searchsorted(begins, end - least, side="right")), 1)
+            costs = best[:usable] + penalty + sums.costs(begins[:usable], int(end))
+            last = int(np.argmin(costs))
+            if number < len(begins):
+                best[number], previous[number] = costs[last], last
+        starts: list[int] = []
+        while last:
+            starts.append(int(begins[last]))
+            last = int(previous[last])
+        return starts[::-1]
+
+    def _moved(self, sums: _Sums, starts: list[int], places: npt.NDArray[np.int64]) -> list[int]:
+        """The starts, each at the best place between its neighbours."""
+        starts = list(starts)
+        for i in range(len(starts)):
+            low = starts[i - 1] + self.min_passing if i else self.min_runs
+            is_last = i + 1 == len(starts)
+            high = sums.count - self.min_runs if is_last else starts[i + 1] - self.min_passing
+            between = places[(places >= low) & (places <= high)]
+            errors = [sums.error([*starts[:i], int(k), *starts[i + 1 :]]) for k in between]
+            starts[i] = int(between[int(np.argmin(errors))])
+        return starts
 
     def _eliminated(self, sums: _Sums, values: Array, starts: list[int], tests: int) -> list[int]:
         """The changes, of those at `starts`, that are significant, clear, and not below the margin."""
@@ -157,28 +195,6 @@ def _limited(values: Array, min_runs: int, sigma: float) -> Array:
     return np.clip(values, medians - _LIMIT * sigma, medians + _LIMIT * sigma)
 
 
-def _partition(
-    sums: _Sums, places: npt.NDArray[np.int64], min_runs: int, sigma: float
-) -> list[int]:
-    """The starts of the segments after the first with the least cost."""
-    penalty = 2 * math.log(sums.count) * sigma**2
-    begins = np.concatenate([[0], places])
-    best = np.full(len(begins), np.inf)  # least cost of everything before each begin
-    best[0] = -penalty
-    previous = np.zeros(len(begins), int)
-    for number, end in enumerate([*begins[1:], sums.count], 1):
-        usable = int(np.searchsorted(begins, end - min_runs, side="right"))
-        costs = best[:usable] + penalty + sums.costs(begins[:usable], int(end))
-        last = int(np.argmin(costs))
-        if number < len(begins):
-            best[number], previous[number] = costs[last], last
-    starts: list[int] = []
-    while last:
-        starts.append(int(begins[last]))
-        last = int(previous[last])
-    return starts[::-1]
-
-
 def _steps(sums: _Sums, starts: list[int]) -> tuple[Array, Array, int]:
     """The differences of neighbouring levels, their standard errors, and the degrees of freedom."""
     levels, lengths = sums.levels(starts)
@@ -199,25 +215,6 @@ def _own_side(sums: _Sums, values: Array, starts: list[int]) -> list[float]:
         before, after = ((segments[k] > middle).mean() for k in (i, i + 1))
         shares.append(float(min(1 - before, after) if rises else min(before, 1 - after)))
     return shares
-
-
-def _moved(
-    sums: _Sums, starts: list[int], places: npt.NDArray[np.int64], min_runs: int
-) -> list[int]:
-    """The starts, each at the best place between its neighbours."""
-    starts = list(starts)
-    for _ in range(3):
-        before = list(starts)
-        for i in range(len(starts)):
-            low = (starts[i - 1] if i else 0) + min_runs
-            high = (starts[i + 1] if i + 1 < len(starts) else sums.count) - min_runs
-            between = places[(places >= low) & (places <= high)]
-            errors = [sums.error([*starts[:i], int(k), *starts[i + 1 :]]) for k in between]
-            if errors:
-                starts[i] = int(between[int(np.argmin(errors))])
-        if starts == before:
-            break
-    return starts
 
 
 def _described(sums: _Sums, starts: list[int]) -> Segments:

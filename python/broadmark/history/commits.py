@@ -7,6 +7,7 @@ file. Without commits each file is a step of its own. The order is that of the r
 
 from __future__ import annotations
 
+import bisect
 import pathlib
 import re
 import subprocess
@@ -79,7 +80,7 @@ def _time(file: str, key: str, text: str) -> datetime:
         raise InputError(
             f"{file}: {key} '{text}': expected a time such as 2026-01-02T03:04:05Z"
         ) from None
-    return time if time.tzinfo else time.replace(tzinfo=timezone.utc)
+    return (time if time.tzinfo else time.replace(tzinfo=timezone.utc)).astimezone(timezone.utc)
 
 
 def _starts(cases: pd.DataFrame) -> list[datetime]:
@@ -195,7 +196,7 @@ def _resolved(repository: str, hashes: list[str], name: str, file: str) -> str:
         parts = reversed(pathlib.PurePath(file).parts)
         candidates = [word for part in parts for word in _HASH.findall(part.lower())]
     for candidate in candidates:
-        i = int(np.searchsorted(hashes, candidate))
+        i = bisect.bisect_left(hashes, candidate)
         if i < len(hashes) and hashes[i].startswith(candidate):
             if i + 1 < len(hashes) and hashes[i + 1].startswith(candidate):
                 raise InputError(f"{file}: commit {candidate} is ambiguous in {repository}")

@@ -73,9 +73,9 @@ def page(history: History, title: str, ids: list[str]) -> Figure:
         lines = [line for line in history.lines if line.case == ids[number]]
         axes.set_title(names[number], loc="left")
         _draw(history, axes, lines, size)
-        _label_commits(history, axes, size[0])
         # The lowest panel of each column has the labels, even above an empty place.
         axes.tick_params(labelbottom=number + columns >= len(ids))
+        _label_commits(history, axes, size[0])
     lower.legend(
         *zip(*entries), loc="upper center", ncol=legend_columns, fontsize=7.5, handlelength=2.4
     )
@@ -219,6 +219,10 @@ def _label_commits(history: History, axes: Any, width: float) -> None:
     room = max(2, int((width - 0.6) / (0.085 * longest)))
     places = sorted({round(place) for place in np.linspace(0, count - 1, min(room, count))})
     axes.set_xticks(places, [history.commits[i].label for i in places], fontsize=6.5)
+    ticks = axes.get_xticklabels()
+    if len(ticks) > 1:  # the outer labels end with the panel
+        ticks[0].set_horizontalalignment("left")
+        ticks[-1].set_horizontalalignment("right")
     axes.grid(False, axis="x")
 
 

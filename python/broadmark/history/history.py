@@ -21,8 +21,8 @@ from broadmark.results import Results
 
 Array = npt.NDArray[np.float64]
 
-#: The fewest runs that show a level; a shorter deviation is a disturbance. A single run shows that of a
-#: count without noise.
+#: The fewest runs that show the latest level, and two more than that a passing one: a shorter deviation
+#: is a disturbance. A single run shows the level of a count without noise.
 MIN_RUNS = 3
 _NO_NOISE = 1e-3
 
@@ -144,7 +144,7 @@ def history(
         notes,
     )
     for number in range(len(machines)):
-        _find_steps(found, number)
+        find_steps(found, number)
     return found
 
 
@@ -218,7 +218,7 @@ def _segments(found: History, values: Array, commits: npt.NDArray[np.int64]) -> 
     return Detection(1 if is_exact else MIN_RUNS, found.margin, tests).segments(values, commits)
 
 
-def _find_steps(found: History, machine: int) -> None:
+def find_steps(found: History, machine: int) -> None:
     """Finds the steps of the lines of a machine, and those of the machine."""
     own = found.machines[machine]
     lines = [line for line in found.lines if line.machine == machine]
