@@ -102,8 +102,8 @@ def found_rates(histories: int, seed: int, ratio: float, **shape: Any) -> tuple[
     return exact / histories, near / histories
 
 
-#: The simulated histories: cases, commits, machines, and the margin.
-SHAPES = [(1, 20, 1), (4, 20, 1), (10, 20, 1), (10, 60, 1), (40, 60, 1), (10, 60, 3)]
+#: The simulated histories: cases, commits and machines.
+SHAPES = [(1, 20, 1), (4, 20, 1), (10, 20, 1), (10, 60, 1), (10, 30, 3)]
 
 
 def main() -> None:
