@@ -90,7 +90,8 @@ TEST_F(Import, AnySourceCanBeWidened) {
                       "w.json"};
     call.insert(call.end(), more.begin(), more.end());
     runQuietly(call);
-    for (const Json& result : readJson(file("w.json"))["cases"]) {
+    const Json cases = readJson(file("w.json"))["cases"];
+    for (const Json& result : cases) {
       EXPECT_EQ(result["status"], "ok") << result["algorithm"];
     }
     return pairsOf(file("w.json"));
