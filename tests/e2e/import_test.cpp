@@ -147,7 +147,8 @@ TEST_F(Import, PairsAcrossPeriodicBoundariesAreFound) {
                              "full", "--json", "p.json"})
       call.emplace_back(more);
     runQuietly(call);
-    for (const Json& result : readJson(file("p.json"))["cases"]) {
+    const Json results = readJson(file("p.json"));
+    for (const Json& result : results["cases"]) {
       EXPECT_THAT(result["status"], testing::AnyOf("ok", "unsupported")) << result["algorithm"];
     }
     return pairsOf(file("p.json"));
