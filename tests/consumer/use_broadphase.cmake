@@ -52,6 +52,14 @@ foreach(example game_loop game_loop_static job_system game_loop_c)
   run("${WORK_DIR}/build/${example}")
 endforeach()
 
+find_program(RUSTC rustc)
+if(RUSTC)
+  message(STATUS "from Rust")
+  run("${RUSTC}" -O "${SOURCE_DIR}/game_loop.rs" -L "${folder}" -C "link-arg=-Wl,-rpath,${folder}"
+    -o "${WORK_DIR}/example")
+  run("${WORK_DIR}/example")
+endif()
+
 # Without the rest, the package says what there is.
 file(WRITE "${WORK_DIR}/rest/CMakeLists.txt"
   "cmake_minimum_required(VERSION 3.16)\nproject(p CXX)\nfind_package(broadmark REQUIRED)\n")
