@@ -118,6 +118,11 @@ std::uint64_t memoryOfWorkers() {
 /// Runs the case in this process, unless its library might end that.
 ExecutorFactory executorsFor(const Algorithm& algorithm, const std::string& program) {
   if (!algorithm.traits.library_aborts) return makeInProcessExecutor;
+  if (program.empty()) {
+    throw InputError(algorithm.id +
+                     ": runs in a process of the program broadmark, which was not found: build it, "
+                     "or set $BROADMARK to its path");
+  }
   return [program](const Case& test_case, CancelQuery cancelled) {
     return makeWorkerProcess(test_case, {.command = {program, "worker"},
                                          .hard_limit = std::chrono::years(100),

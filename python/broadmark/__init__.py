@@ -10,6 +10,15 @@
 - `read_results`: results files as pandas data frames
 """
 
+import importlib.util
+import sys
+
+if _missing := [name for name in ("numpy", "pandas") if importlib.util.find_spec(name) is None]:
+    raise ImportError(
+        f"broadmark needs {' and '.join(_missing)}, which {sys.executable} lacks: Debian's are for "
+        "/usr/bin/python3"
+    )
+
 from broadmark.arguments import EMPTY_BOX
 from broadmark.broad_phase import BroadPhase
 from broadmark.errors import InputError

@@ -9,6 +9,7 @@ import sys
 
 import broadmark
 from broadmark.commands import COMMANDS
+from broadmark.program import find_program
 
 EXIT_STATUSES = """\
 exit status:
@@ -16,6 +17,14 @@ exit status:
   1    a wrong answer or a failed algorithm
   2    bad usage or bad input
   130  interrupted (Ctrl-C)"""
+
+
+def _version() -> str:
+    try:
+        program = find_program()
+    except broadmark.InputError:
+        program = "not found"
+    return f"broadmark {broadmark.__version__}; the program: {program}"
 
 
 def parser(names: list[str]) -> argparse.ArgumentParser:
@@ -27,6 +36,7 @@ def parser(names: list[str]) -> argparse.ArgumentParser:
         epilog=EXIT_STATUSES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    top.add_argument("--version", action="version", version=_version())
     commands = top.add_subparsers(metavar="COMMAND", required=True)
     for name in names:
         module = importlib.import_module(f"broadmark.commands.{name}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib.util
 import pathlib
+from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
@@ -36,17 +37,25 @@ def overlaps(
     """
     texts = {name: str(value) for name, value in (parameters or {}).items()}
     array = np.ascontiguousarray(as_boxes(boxes))
+    try:
+        program = find_program()
+    except InputError:
+        program = ""  # few algorithms need it
     pairs: npt.NDArray[np.uint32] = native().overlaps(
-        array, str(algorithm), as_threads(threads), str(isa), texts, find_program()
+        array, str(algorithm), as_threads(threads), str(isa), texts, program
     )
     return pairs
+
+
+def _folders() -> Iterator[pathlib.Path]:
+    yield pathlib.Path(__file__).parent
+    yield pathlib.Path(find_program()).parent / "python"
 
 
 @functools.cache
 def native() -> ModuleType:
     """The compiled module, installed with this package or built next to the program."""
-    folders = [pathlib.Path(__file__).parent, pathlib.Path(find_program()).parent / "python"]
-    for folder in folders:
+    for folder in _folders():
         for file in folder.glob("_native*.so"):
             spec = importlib.util.spec_from_file_location("broadmark._native", file)
             if spec is not None and spec.loader is not None:

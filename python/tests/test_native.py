@@ -178,3 +178,16 @@ def test_invalid_arguments_are_rejected(arguments: dict[str, Any], message: str)
     all_arguments: dict[str, Any] = {"boxes": np.zeros((1, 6))} | arguments
     with pytest.raises(broadmark.InputError, match=message):
         broadmark.overlaps(**all_arguments)
+
+
+def test_few_algorithms_need_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    boxes = [[0, 0, 0, 1, 1, 1], [1, 1, 1, 2, 2, 2]]
+    native()
+
+    def not_found() -> str:
+        raise broadmark.InputError("not found")
+
+    monkeypatch.setattr("broadmark.native.find_program", not_found)
+    assert broadmark.overlaps(boxes).tolist() == [[0, 1]]
+    with pytest.raises(broadmark.InputError, match="dbvt-d: runs in a process of the program broadmark"):
+        broadmark.overlaps(boxes, "dbvt-d")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pathlib
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,7 @@ import pytest
 
 import broadmark
 from broadmark.commands import COMMANDS
-from broadmark.program import call
+from broadmark.program import call, find_program
 
 
 def test_a_scene_is_run_with_any_options() -> None:
@@ -40,6 +42,9 @@ def test_what_is_no_array_is_an_error() -> None:
 
 def test_the_version_is_that_of_the_program() -> None:
     assert call("--version").split()[0] == broadmark.__version__
+    command = [sys.executable, "-m", "broadmark", "--version"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert said == f"broadmark {broadmark.__version__}; the program: {find_program()}\n"
 
 
 def test_a_wrong_answer_is_a_status_not_an_exception(faulty_plugin: str) -> None:
