@@ -165,7 +165,7 @@ CLI::Option* addFlag(CLI::App& app, const std::string& name, bool& target, const
   return app.add_flag(name, target, doc)->default_function([&] { return target ? "true" : ""; });
 }
 
-/// An option whose value may be left out, and is then `implied`: --NAME or --NAME=VALUE.
+/// An option with an optional value: --NAME, which means `implied`, or --NAME=VALUE.
 CLI::Option* addFlagWithValue(CLI::App& app, const std::string& name, const std::string& implied,
                               std::string& target, const std::string& doc) {
   return app.add_flag(fmt::format("{}{{{}}}", name, implied), target, doc)

@@ -9,7 +9,7 @@
 
 namespace broadmark {
 
-/// Passes on every call whose meaning an adapter need not change.
+/// Forwards the calls that adapters rarely change.
 class Adapter : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) final { algorithm_->visitParameters(visit); }

@@ -11,7 +11,7 @@
 //               answer ("pairs" | "events"),
 //               memory_limit_bytes (0: none), pin                 {}
 //   start       scene {name, object_type, objects, frames,        initialize_ns, pinned
-//               world, all_present, filter_changes},
+//               world, all_present, filter_changes, periodic},
 //               filter (null: all pairs are wanted)
 //               shared: the boxes of frame 0, then the filter's
 //               tags, worlds, layers, if any
