@@ -5,9 +5,9 @@
 //                unused slots are absent bodies
 //
 // A frame updates the slots of changed bodies: O(changed bodies). Slots of images that have gone
-// are used again from the next frame on. Without a free slot, the algorithm starts anew with twice
-// as many. The pairs that it finds are mapped back to bodies: O(pairs). Bodies that overlap in
-// several ways would be found several times: one of the pairs of images is kept.
+// are used again from the next frame on. Without a free slot, their number is doubled and the
+// algorithm initialised again. The pairs that it finds are mapped back to bodies: O(pairs). Bodies
+// that overlap in several ways would be found several times: one of the pairs of images is kept.
 
 #include <algorithm>
 #include <bit>
