@@ -12,7 +12,7 @@
 namespace broadmark {
 namespace {
 
-/// The scene whose world is the periodic box, along the axes along which it repeats.
+/// The scene in a periodic world: along periodic axes its world is the box.
 SceneInfo sceneIn(PeriodicBox box, SceneInfo scene) {
   scene.periodic = box;
   for (int axis = 0; axis < 3; ++axis) {

@@ -146,7 +146,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsPairsAcrossPeriodicBoundaries) {
   }
 }
 
-// Few images at first, then seven of every body: the algorithm starts anew with more of them.
+// Few images at first, then seven of every body: more than the adapter has slots for.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsPairsOfManyImagesThatAppearAtOnce) {
   ChangingWorld world{.name = "into a corner", .filter = {}, .frames = {}};
   world.periodic = {{0, 0, 0}, {10, 10, 10}};

@@ -60,7 +60,7 @@ std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
                                        const ParameterValues& reading);
 
 /// The scene of the adapted frames of this scene: "FreeFall swept", "FreeFall swept widened".
-/// Throws InputError likewise.
+/// Throws InputError for an invalid value.
 SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading);
 /// The name of the scene whose adapted name this is.
 std::string unadaptedName(std::string name, const ParameterValues& reading);
