@@ -9,6 +9,7 @@
 #include "broadmark/adapters.h"
 #include "broadmark/cores.h"
 #include "broadmark/exclusive_use.h"
+#include "callgrind.h"
 
 namespace broadmark {
 namespace {
@@ -45,7 +46,9 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
 void requireRunnable(const Case& test_case, const SceneInfo& scene) {
   const AlgorithmTraits& traits = test_case.algorithm.traits;
   if (traits.vectorised && !isaSupported(test_case.isa)) {
-    throw UnsupportedError(fmt::format("this processor has no {}", isaName(test_case.isa)));
+    throw UnsupportedError(fmt::format("{} has no {}",
+                                       callgrind::isRunning() ? "valgrind" : "this processor",
+                                       isaName(test_case.isa)));
   }
   if (scene.objects > traits.max_objects) {
     throw UnsupportedError(
@@ -103,7 +106,7 @@ std::int64_t InProcessExecutor::start(const SceneInfo& scene, const Frame& first
   requireRunnable(case_, scene);
   const ExclusiveUse exclusive(case_.algorithm.traits.exclusive);
   report_.processor = {};
-  if (!processor_) processor_.emplace();
+  if (!processor_) processor_.emplace(counter_source_);
   processor_->restart();
   if (usable_cores_.empty()) usable_cores_ = usableCores();
   if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);

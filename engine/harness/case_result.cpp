@@ -40,7 +40,7 @@ std::optional<double> CaseResult::perFrame(ProcessorCounter which) const {
   for (const Repetition& repetition : repetitions) {
     if (!repetition.processor[which]) continue;
     sum += static_cast<double>(*repetition.processor[which]);
-    frames_counted += repetition.frames.size();
+    frames_counted += timed() ? repetition.frames.size() : frames.size();
   }
   if (frames_counted == 0) return std::nullopt;
   return sum / static_cast<double>(frames_counted);

@@ -14,6 +14,17 @@ namespace {
 /// Frames before the running mean is compared with the limit.
 constexpr std::uint32_t kFramesBeforeLimit = 3;
 
+/// Throws UnsupportedError unless a count holds all instructions of the case, and only these:
+/// threads that wait for each other execute some, too.
+void requireCountable(const Case& test_case) {
+  if (test_case.algorithm.traits.on_device) {
+    throw UnsupportedError("instructions of a device are not counted");
+  }
+  if (test_case.threads > 1) {
+    throw UnsupportedError("instructions are counted on one thread only (--threads 1)");
+  }
+}
+
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
@@ -71,6 +82,7 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   has_instance_ = true;  // stop() must be called even if start() fails halfway
   accumulated_.clear();
   const bool started = attempt([&] {
+    if (policy_.counted_by) requireCountable(case_);
     initialize_ns_ = executor_->start(scene, change_detector_.complete(first));
     accumulateEvents(first);
   });
@@ -92,9 +104,10 @@ bool CaseRun::step(const Frame& frame) {
   });
   if (!stepped) return false;
   ++frames_;
+  ended_ = frames_ >= policy_.max_frames;
   total_ns_ += last_.times[Phase::total];
   const double mean_s = seconds(total_ns_) / frames_;
-  if (frames_ < kFramesBeforeLimit || mean_s <= policy_.frame_limit_seconds) return true;
+  if (frames_ < kFramesBeforeLimit || mean_s <= policy_.frame_limit_seconds) return !ended_;
   fail(Status::timeout, fmt::format("{:.3g} s/frame after frame {}: over the limit of {:.3g} s",
                                     mean_s, frame.index, policy_.frame_limit_seconds));
   ended_ = true;

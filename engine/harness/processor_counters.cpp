@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+#include "callgrind.h"
+
 namespace broadmark {
 namespace {
 
@@ -40,7 +42,11 @@ FileDescriptor ProcessorCounters::open(const Event& event) {
                                                    kAnyCore, kNoGroup, PERF_FLAG_FD_CLOEXEC)));
 }
 
-ProcessorCounters::ProcessorCounters() : ProcessorCounters(kHardware) {}
+ProcessorCounters::ProcessorCounters(CounterSource source) : source_(source) {
+  // Under valgrind the events would be those of valgrind itself.
+  if (source == CounterSource::valgrind || callgrind::isRunning()) return;
+  for (std::size_t i = 0; i < kHardware.size(); ++i) counters_[i].file = open(kHardware[i]);
+}
 
 ProcessorCounters::ProcessorCounters(const Events& events) {
   for (std::size_t i = 0; i < events.size(); ++i) counters_[i].file = open(events[i]);
@@ -54,6 +60,13 @@ std::optional<ProcessorCounters::Reading> ProcessorCounters::read(const Counter&
   return reading;
 }
 
+bool ProcessorCounters::countInstructions() {
+  ProcessorCounters probe;
+  probe.restart();
+  { const Counting counting(probe); }
+  return probe.counts()[ProcessorCounter::instructions].value_or(0) > 0;
+}
+
 void ProcessorCounters::controlAll(unsigned long request) const {
   for (const Counter& counter : counters_) {
     if (counter.file.get() >= 0) ::ioctl(counter.file.get(), request, 0);
@@ -61,17 +74,32 @@ void ProcessorCounters::controlAll(unsigned long request) const {
 }
 
 ProcessorCounters::Counting::Counting(const ProcessorCounters& counters) : counters_(counters) {
-  counters_.controlAll(PERF_EVENT_IOC_ENABLE);
+  if (counters_.source_ == CounterSource::valgrind) {
+    callgrind::start();
+  } else {
+    counters_.controlAll(PERF_EVENT_IOC_ENABLE);
+  }
 }
 
-ProcessorCounters::Counting::~Counting() { counters_.controlAll(PERF_EVENT_IOC_DISABLE); }
+ProcessorCounters::Counting::~Counting() {
+  if (counters_.source_ == CounterSource::valgrind) {
+    callgrind::stop();
+  } else {
+    counters_.controlAll(PERF_EVENT_IOC_DISABLE);
+  }
+}
 
 void ProcessorCounters::restart() {
+  if (source_ == CounterSource::valgrind) callgrind::takeInstructions();
   for (Counter& counter : counters_) counter.before = read(counter).value_or(Reading());
 }
 
 ProcessorCounts ProcessorCounters::counts() const {
   ProcessorCounts counts;
+  if (source_ == CounterSource::valgrind) {
+    counts[ProcessorCounter::instructions] = callgrind::takeInstructions();
+    return counts;
+  }
   for (std::size_t i = 0; i < counters_.size(); ++i) {
     const std::optional<Reading> now = read(counters_[i]);
     if (!now) continue;

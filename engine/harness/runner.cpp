@@ -136,6 +136,7 @@ CaseResult beginCase(const Case& test_case, const RecordingReference& recording)
 bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, Oracle& oracle,
                    const RunHooks& hooks, bool measured) {
   result.checked = case_run.checks();
+  result.conditions.counted_by = case_run.countedBy();
   Repetition repetition;
   repetition.frames.reserve(source.scene().frames);
   try {
@@ -144,7 +145,7 @@ bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, O
     if (case_run.start(source.scene(), first) && result.setup.empty()) {
       result.setup = case_run.setup();
     }
-    repetition.initialize_ns = case_run.initializeNanoseconds();
+    if (!case_run.countedBy()) repetition.initialize_ns = case_run.initializeNanoseconds();
     while (case_run.running()) {
       const std::optional<Frame> frame = source.next();
       if (!frame) break;
@@ -154,7 +155,7 @@ bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, O
       }
       case_run.step(*frame);
       if (!case_run.answered()) break;
-      repetition.frames.push_back(case_run.times());
+      if (!case_run.countedBy()) repetition.frames.push_back(case_run.times());
       counter.count(*frame, case_run, oracle);
       if (hooks.progress) hooks.progress(frame->index);
     }
@@ -167,6 +168,11 @@ bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, O
   }
   result.status = case_run.status();
   result.reason = case_run.reason();
+  if (!result.timed() && result.status == Status::ok && measured &&
+      !result.repetitions.back().processor[ProcessorCounter::instructions]) {
+    result.status = Status::error;
+    result.reason = "no instructions were counted";
+  }
   result.peak_bytes = case_run.report().peak_bytes;
   result.conditions.pinned = case_run.report().pinned;
   return true;

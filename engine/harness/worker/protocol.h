@@ -9,7 +9,8 @@
 //   case        algorithm, plugin, plugin_hash (of that file),
 //               isa, threads, device, parameters {},
 //               answer ("pairs" | "events"),
-//               memory_limit_bytes (0: none), pin                 {}
+//               memory_limit_bytes (0: none), pin,
+//               counters ("processor" | "valgrind")               counters
 //   start       scene {name, object_type, objects, frames,        initialize_ns, pinned
 //               world, all_present, filter_changes, periodic},
 //               filter (null: all pairs are wanted)

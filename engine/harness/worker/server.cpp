@@ -82,7 +82,9 @@ class Server {
 
   Json setCase(const Json& message) {
     started_ = false;
-    executor_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
+    const auto counters = kCounterSources.find(message.value("counters", std::string()))
+                              .value_or(CounterSource::processor);
+    executor_.emplace(worker::caseFrom(message, find_), message.value("pin", false), counters);
     const auto limit = message.at("memory_limit_bytes").get<std::uint64_t>();
     // Sanitizers reserve more than the machine has, and cannot be limited.
     const std::uint64_t used = statusBytes("VmData").value_or(0);
@@ -93,7 +95,7 @@ class Server {
           static_cast<double>(limit) / kGibibyte, static_cast<double>(used) / kGibibyte));
     }
     limitMemory(limit, /*permanent=*/true);
-    return Json::object();
+    return {{"counters", kCounterSources.nameOf(counters)}};
   }
 
   InProcessExecutor& executor() {

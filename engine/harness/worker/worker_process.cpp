@@ -11,10 +11,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <initializer_list>
 #include <thread>
 
 #include "broadmark/error.h"
+#include "callgrind.h"
 #include "worker/protocol.h"
 
 namespace broadmark {
@@ -40,7 +40,7 @@ std::string endText(int wait_status) {
 
 /// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, its
 /// output goes to our standard error. Throws InputError when it cannot be started.
-pid_t spawn(std::vector<std::string> command, std::initializer_list<int> descriptors) {
+pid_t spawn(std::vector<std::string> command, const std::vector<int>& descriptors) {
   posix_spawn_file_actions_t actions{};
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -60,13 +60,21 @@ pid_t spawn(std::vector<std::string> command, std::initializer_list<int> descrip
   arguments.push_back(nullptr);
   pid_t pid = 0;
   const int error =
-      ::posix_spawn(&pid, arguments.front(), &actions, nullptr, arguments.data(), environ);
+      ::posix_spawnp(&pid, arguments.front(), &actions, nullptr, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     throw InputError(fmt::format("{}: cannot be started as a worker process: {}", command.front(),
                                  std::strerror(error)));
   }
   return pid;
+}
+
+/// The command of the process. Under valgrind /proc/self would be valgrind's.
+std::vector<std::string> commandOf(const WorkerOptions& options) {
+  if (!options.valgrind) return options.command;
+  std::vector<std::string> command = options.command;
+  if (command.front() == "/proc/self/exe") command.front() = fmt::format("/proc/{}/exe", getpid());
+  return callgrind::commandUnder(command);
 }
 
 /// Interval for polling `cancelled` during a wait.
@@ -86,14 +94,15 @@ class Connection {
 
   SharedMemory frames;
   SharedMemory answers;
+  SharedMemory counts;  ///< of callgrind
 
   /// False once kill() or wait() has reaped the process.
   [[nodiscard]] bool alive() const { return pid_ != 0; }
 
-  /// Exchanges versions, and sends the case.
-  void setUp(const Json& case_message) {
+  /// Exchanges versions, and sends the case. Returns the answer.
+  Json setUp(const Json& case_message) {
     checkVersion();
-    call(case_message, options_.begin_limit);
+    return call(case_message, options_.begin_limit);
   }
 
   /// The answer to a call into the algorithm. Rethrows its exception; else throws as CaseExecutor.
@@ -108,7 +117,8 @@ class Connection {
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
     if (!greeting) {
-      throw InputError(fmt::format("{}: cannot serve as a worker process: {}", program, wait()));
+      throw InputError(
+          fmt::format("{}: cannot serve as a worker process: {}", program, endText(wait())));
     }
     throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
                                  program, version, worker::kProtocolVersion));
@@ -128,7 +138,8 @@ class Connection {
 
   Connection(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
-        pid_(spawn(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()})),
+        pid_(spawn(commandOf(options), {ends.there.get(), frames.descriptor(), answers.descriptor(),
+                                        counts.descriptor()})),
         channel_(std::in_place, std::move(ends.here)) {}
 
   /// The next message; nullopt once the process has hung up.
@@ -157,9 +168,8 @@ class Connection {
     wait();
   }
 
-  /// Waits for the process to end, and kills it after the grace period. Returns the outcome:
-  /// "crashed with SIGSEGV (Segmentation fault)".
-  std::string wait() {
+  /// Waits for the process to end, and kills it after the grace period. Returns its status.
+  int wait() {
     const auto end = Clock::now() + kGracePeriod;
     int status = 0;
     while (::waitpid(pid_, &status, WNOHANG) == 0) {
@@ -167,11 +177,17 @@ class Connection {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     pid_ = 0;
-    return endText(status);
+    return status;
   }
 
   /// Reports the end of the process.
-  [[noreturn]] void fail() { throw HostError(wait()); }
+  [[noreturn]] void fail() {
+    const int status = wait();
+    if (options_.valgrind && WIFSIGNALED(status) && WTERMSIG(status) == SIGILL) {
+      throw UnsupportedError("valgrind does not know all of its instructions");
+    }
+    throw HostError(endText(status));
+  }
 
   const WorkerOptions& options_;
   pid_t pid_;
@@ -215,7 +231,7 @@ class WorkerProcess final : public CaseExecutor {
     ended_ = {};
     if (!isOpen()) return;
     const Json stopped = call("stop");
-    if (!report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
+    if (!options_.valgrind && !report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
       report_.peak_bytes = stopped.at("peak_bytes").get<std::uint64_t>();
     }
     report_.heap_bytes.reset();
@@ -288,9 +304,17 @@ class WorkerProcess final : public CaseExecutor {
     connection_ = std::make_unique<Connection>(options_);
     Json message = worker::toJson(case_);
     message["call"] = "case";
-    message["memory_limit_bytes"] = options_.memory_limit_bytes;
+    // Under valgrind the limit would be that of valgrind itself.
+    message["memory_limit_bytes"] = options_.valgrind ? 0 : options_.memory_limit_bytes;
     message["pin"] = options_.pin;
-    connection_->setUp(message);
+    const std::string_view counters = kCounterSources.nameOf(
+        options_.valgrind ? CounterSource::valgrind : CounterSource::processor);
+    message["counters"] = counters;
+    const Json answer = connection_->setUp(message);
+    if (options_.valgrind && answer.value("counters", std::string()) != counters) {
+      throw InputError(fmt::format("{}: this build cannot count instructions under valgrind",
+                                   options_.command.front()));
+    }
   }
 
   /// A call without arguments.

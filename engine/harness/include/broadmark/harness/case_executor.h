@@ -82,8 +82,9 @@ class InProcessExecutor final : public CaseExecutor {
   /// With `pin`, binds each of the case's threads, the calling thread included, to its own core,
   /// chosen again for every pass; unless there are too few cores, or a device's driver has threads,
   /// too. The calling thread remains bound: for a process without other work.
-  explicit InProcessExecutor(Case test_case, bool pin = false)
-      : case_(std::move(test_case)), pin_(pin) {}
+  explicit InProcessExecutor(Case test_case, bool pin = false,
+                             CounterSource counters = CounterSource::processor)
+      : case_(std::move(test_case)), pin_(pin), counter_source_(counters) {}
   ~InProcessExecutor() override;
   InProcessExecutor(const InProcessExecutor&) = delete;
   InProcessExecutor& operator=(const InProcessExecutor&) = delete;
@@ -110,6 +111,7 @@ class InProcessExecutor final : public CaseExecutor {
 
   Case case_;
   bool pin_;
+  CounterSource counter_source_;
   std::vector<int> usable_cores_;  ///< before pinning
   // Set by the first start(). Counters come first: they count threads started after them.
   std::optional<ProcessorCounters> processor_;

@@ -22,7 +22,7 @@ namespace broadmark {
 /// One pass of a fresh instance over the whole recording.
 struct Repetition {
   std::int64_t initialize_ns = 0;
-  std::vector<FrameTimes> frames;
+  std::vector<FrameTimes> frames;  ///< empty unless CaseResult::timed()
   ProcessorCounts processor = {};  ///< sums over the four phases of all frames
 };
 
@@ -99,6 +99,8 @@ struct CaseResult {
   [[nodiscard]] Summary summary() const;
   /// The mean of a phase per frame, over all repetitions; nullopt without frames.
   [[nodiscard]] std::optional<double> meanSeconds(Phase phase) const;
+  /// Whether times were measured, rather than instructions counted.
+  [[nodiscard]] bool timed() const { return !conditions.counted_by; }
   /// The mean per frame, over the repetitions with this counter; nullopt if there are none.
   [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
   /// The number of frames with a mismatch in some repetition.

@@ -31,6 +31,9 @@ struct RunPolicy {
   /// Limit on the running mean of a frame's total, judged from the third frame on.
   double frame_limit_seconds = 0.5;
   double initialize_limit_seconds = 60;
+  std::uint32_t max_frames = std::numeric_limits<std::uint32_t>::max();  ///< of a pass
+  /// If set, instructions are counted instead of times, of cases where that is possible.
+  std::optional<CounterSource> counted_by = std::nullopt;
 
   /// Without time limits.
   static RunPolicy unlimited(CheckMode check) {
@@ -62,6 +65,8 @@ class CaseRun {
   [[nodiscard]] bool checks() const {
     return policy_.check != CheckMode::off && case_.algorithm.traits.finds_pairs;
   }
+  /// As RunPolicy::counted_by.
+  [[nodiscard]] std::optional<CounterSource> countedBy() const { return policy_.counted_by; }
   /// Disables checks of further answers.
   void stopChecking() { policy_.check = CheckMode::off; }
 
@@ -124,7 +129,7 @@ class CaseRun {
   float margin_ = 0;
   std::unique_ptr<CaseExecutor> executor_;
   bool has_instance_ = false;
-  bool ended_ = false;   ///< a time limit ended the current pass: its instance still exists
+  bool ended_ = false;   ///< a limit ended the current pass: its instance still exists
   bool failed_ = false;  ///< a failure or a limit ended some pass: see reason_
   Status status_ = Status::ok;
   std::string reason_;

@@ -17,11 +17,13 @@ struct Conditions {
   std::optional<double> frame_limit_seconds;
   std::optional<double> initialize_limit_seconds;
   std::optional<double> call_limit_seconds;  ///< on one call of the algorithm
-  bool in_process = false;                   ///< without a worker process of its own
-  bool pinned = false;                       ///< each thread to its own core
-  double load_average = 0;                   ///< over the last minute, at the start of the case
-  PluginBuild plugin;                        ///< of the algorithm's plug-in
-  std::vector<std::string> warnings;         ///< possible disturbances of the times
+  /// What counted instructions, instead of times; nullopt: times were measured.
+  std::optional<CounterSource> counted_by;
+  bool in_process = false;            ///< without a worker process of its own
+  bool pinned = false;                ///< each thread to its own core
+  double load_average = 0;            ///< over the last minute, at the start of the case
+  PluginBuild plugin;                 ///< of the algorithm's plug-in
+  std::vector<std::string> warnings;  ///< possible disturbances of the times
 };
 
 }  // namespace broadmark

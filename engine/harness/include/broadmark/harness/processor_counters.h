@@ -1,4 +1,4 @@
-// Hardware performance counters, where the system permits them.
+// Hardware performance counters, where the system permits them, or instructions by valgrind.
 #pragma once
 
 #include <array>
@@ -22,6 +22,12 @@ inline constexpr NameTable kProcessorCounters{{NamedValue{ProcessorCounter::cycl
 using ProcessorCounts =
     ValueOfEach<ProcessorCounter, std::optional<std::uint64_t>, kProcessorCounters.entries.size()>;
 
+/// What counts: the processor, or valgrind's tool callgrind, under which this process then runs.
+/// callgrind counts only instructions, and only those of one thread.
+enum class CounterSource { processor, valgrind };
+inline constexpr NameTable kCounterSources{
+    {NamedValue{CounterSource::processor, "processor"}, {CounterSource::valgrind, "valgrind"}}};
+
 /// Counts for the creating thread, and for the threads that it starts afterwards. Most
 /// virtual machines and containers forbid counting: then all counts are nullopt, without an error.
 class ProcessorCounters {
@@ -33,7 +39,7 @@ class ProcessorCounters {
   };
   using Events = std::array<Event, kProcessorCounters.entries.size()>;
 
-  ProcessorCounters();
+  explicit ProcessorCounters(CounterSource source = CounterSource::processor);
   /// Substitute events, for tests on machines without access to the processor's counters.
   explicit ProcessorCounters(const Events& events);
 
@@ -53,6 +59,8 @@ class ProcessorCounters {
   /// The counts since restart(). With more counters than hardware slots the kernel multiplexes
   /// them, and the counts are estimates.
   [[nodiscard]] ProcessorCounts counts() const;
+  /// Whether the processor counts instructions for this process.
+  static bool countInstructions();
 
  private:
   /// A raw count, with the time enabled and the time running.
@@ -69,6 +77,7 @@ class ProcessorCounters {
   static std::optional<Reading> read(const Counter& counter);
   void controlAll(unsigned long request) const;
 
+  CounterSource source_ = CounterSource::processor;
   std::array<Counter, kProcessorCounters.entries.size()> counters_;
 };
 

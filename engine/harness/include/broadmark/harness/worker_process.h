@@ -28,6 +28,9 @@ struct WorkerOptions {
   /// Limit on the process's data memory; beyond it, allocations fail. 0: no limit.
   std::uint64_t memory_limit_bytes = 0;
   bool pin = false;  ///< as in InProcessExecutor
+  /// Runs the process under valgrind, to count instructions: its times are then meaningless, and
+  /// its peak memory unknown.
+  bool valgrind = false;
   CancelQuery cancelled = {};
 };
 
