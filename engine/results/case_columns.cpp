@@ -50,6 +50,7 @@ std::string withSpaces(std::string_view name) {
 }
 
 bool hasFrames(R result) {
+  if (!result.timed()) return !result.frames.empty();
   return std::ranges::any_of(result.repetitions,
                              [](const Repetition& pass) { return !pass.frames.empty(); });
 }
@@ -107,7 +108,9 @@ CaseColumn summaryTime(const std::string& key, std::string_view title, const cha
   shown.known = Availability::timed;
   shown.figure = true;
   shown.meaningful = hasFrames;
-  const auto get = [time](R, S summary) { return summary.*time; };
+  const auto get = [time](R result, S summary) {
+    return result.timed() ? std::optional(summary.*time) : std::nullopt;
+  };
   return computed(key, title, derived(path), get, std::move(shown));
 }
 
@@ -124,7 +127,8 @@ ColumnDisplay wrongPairs(int place) {
       .known = Availability::checked, .terminal = place, .figure = true, .meaningful = hasFrames};
 }
 
-double meanInitialisation(R result) {
+std::optional<double> meanInitialisation(R result) {
+  if (!result.timed()) return std::nullopt;
   double sum = 0;
   for (const Repetition& repetition : result.repetitions) {
     sum += static_cast<double>(repetition.initialize_ns) * 1e-9;
@@ -210,7 +214,9 @@ std::vector<CaseColumn> times() {
       ci95Bound("ci95_high_seconds", "upper end of the 95 % interval", "summary/ci95/1",
                 &Interval::high),
       computed("outliers", "", derived("summary/outliers"),
-               [](R, S summary) { return summary.outliers; },
+               [](R result, S summary) {
+                 return result.timed() ? std::optional(summary.outliers) : std::nullopt;
+               },
                {.known = Availability::timed, .figure = true}),
       computed("initialize_seconds", "initialisation", {"initialize_ns", JsonForm::seconds},
                meanInitialisation, {.known = Availability::timed, .figure = true})};
@@ -252,10 +258,13 @@ std::vector<CaseColumn> counts() {
       stored("peak_bytes", "memory", optional("peak_bytes"), &CaseResult::peak_bytes,
              {.report = 110, .rank = 3, .figure = true})};
   for (const auto& [counter, name] : kProcessorCounters.entries) {
-    columns.push_back(computed(fmt::format("{}_per_frame", name), "",
-                               {fmt::format("processor/{}", name), JsonForm::per_frame, true},
-                               [counter](R r) { return r.perFrame(counter); },
-                               {.particular = true}));
+    ColumnDisplay shown{.particular = true};
+    // Shown instead of times where instructions are counted.
+    if (counter == ProcessorCounter::instructions) shown.terminal = 65;
+    columns.push_back(computed(
+        fmt::format("{}_per_frame", name), "",
+        {fmt::format("processor/{}", name), JsonForm::per_frame, true},
+        [counter](R r) { return r.perFrame(counter); }, std::move(shown)));
   }
   return columns;
 }

@@ -45,6 +45,7 @@ Json toJson(const Conditions& c) {
           {"frame_limit_seconds", orNull(c.frame_limit_seconds)},
           {"initialize_limit_seconds", orNull(c.initialize_limit_seconds)},
           {"call_limit_seconds", orNull(c.call_limit_seconds)},
+          {"counted_by", c.counted_by ? Json(kCounterSources.nameOf(*c.counted_by)) : Json()},
           {"in_process", c.in_process},
           {"pinned", c.pinned},
           {"load_average", c.load_average},
@@ -60,6 +61,9 @@ Conditions conditionsFrom(const JsonFields& json) {
   json.read("frame_limit_seconds", c.frame_limit_seconds);
   json.read("initialize_limit_seconds", c.initialize_limit_seconds);
   json.read("call_limit_seconds", c.call_limit_seconds);
+  if (json.has("counted_by") && !json.at("counted_by").is_null()) {
+    c.counted_by = json.named("counted_by", kCounterSources);
+  }
   json.read("in_process", c.in_process);
   if (json.has("pinned")) json.read("pinned", c.pinned);
   json.read("load_average", c.load_average);

@@ -38,7 +38,9 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
                                    const std::string& initialize_name) {
   std::vector<Repetition> repetitions;
   for (const Json& ns : initialize_ns) {
-    repetitions.push_back({JsonFields::integerOf<std::int64_t>(ns, initialize_name, 0), {}});
+    // null: instructions were counted, not times.
+    repetitions.push_back(
+        {ns.is_null() ? 0 : JsonFields::integerOf<std::int64_t>(ns, initialize_name, 0), {}});
   }
   for (const auto& [phase, phase_name] : kPhases.entries) {
     const std::string key(phase_name);
@@ -108,7 +110,7 @@ void addFrames(Json& json, const CaseResult& result) {
   const std::vector<Repetition>& repetitions = result.repetitions;
   json["initialize_ns"] = Json::array();
   for (const Repetition& repetition : repetitions) {
-    json["initialize_ns"].push_back(repetition.initialize_ns);
+    json["initialize_ns"].push_back(result.timed() ? Json(repetition.initialize_ns) : Json());
   }
   json["processor"] =
       arraysOf(kProcessorCounters, repetitions.size(), [&](ProcessorCounter which, std::size_t r) {

@@ -308,14 +308,17 @@ def _seconds(nanoseconds: Any, case: dict[str, Any]) -> float | None:
     """The mean of all frames; 0 for the transfer times of a case without a device."""
     if nanoseconds is None:
         return 0.0 if any(map(len, case["frames"]["total"])) else None
-    times = np.hstack(nanoseconds) if nanoseconds else np.empty(0)
+    # None: instructions were counted, not times.
+    known = [times for times in nanoseconds if times is not None]
+    times = np.hstack(known) if known else np.empty(0)
     return float(times.mean()) * 1e-9 if len(times) else None
 
 
 def _per_frame(sums: Any, case: dict[str, Any]) -> float | None:
     """The mean per frame over the repetitions with a known sum."""
+    counted = case.get("conditions", {}).get("counted_by")  # instead of times
     known = [
-        (total, len(times))
+        (total, len(case["frame_counts"]["pairs"]) if counted else len(times))
         for total, times in zip(sums or [], case["frames"]["total"])
         if total is not None
     ]
