@@ -278,6 +278,17 @@ std::optional<RunRatio> ratioWithinRun(const CaseResult& before, const CaseResul
   return ratioFrom(*own, 0, own->noise);
 }
 
+std::optional<RunRatio> ratioOfInstructions(const CaseResult& before, const CaseResult& after) {
+  const std::optional<double> a = before.perFrame(ProcessorCounter::instructions);
+  const std::optional<double> b = after.perFrame(ProcessorCounter::instructions);
+  if (a.value_or(0) <= 0 || b.value_or(0) <= 0) return std::nullopt;
+  const double ratio = *b / *a;
+  return RunRatio{.before = *a,
+                  .after = *b,
+                  .ratio = {ratio, {ratio / (1 + kCountTolerance), ratio * (1 + kCountTolerance)}},
+                  .drift = std::nullopt};
+}
+
 Verdict verdictOn(const Interval& ratio, double margin) {
   if (ratio.low >= 1 / (1 + margin) && ratio.high <= 1 + margin) return Verdict::same;
   if (ratio.low > 1) return Verdict::slower;

@@ -1,4 +1,4 @@
-// Time ratios between the cases of two separate runs, frame by frame.
+// Time ratios between the cases of two separate runs, frame by frame, and ratios of instructions.
 //
 // Each frame counts with its minimum over the repetitions, since disturbances only slow frames
 // down. The machine's speed may differ between two runs, for all cases: a case's ratio is relative
@@ -50,9 +50,9 @@ inline constexpr NameTable kVerdicts{{NamedValue{Verdict::same, "same"},
 /// negligible.
 Verdict verdictOn(const Interval& ratio, double margin);
 
-/// Times of B / times of A.
+/// Times of B / times of A, or instructions of B / instructions of A.
 struct RunRatio {
-  // Mean over the frames of their minimum times, in seconds.
+  // Mean over the frames of their minimum times, in seconds; or of their instructions.
   double before = 0;
   double after = 0;
   /// (after / before) / (1 + drift); undivided with fewer than three other cases.
@@ -72,6 +72,15 @@ struct PairedCase {
 /// either, at least 8 % is assumed, and the drift of one or two others widens the interval.
 /// The ratio of identical times is 1.
 std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> cases);
+
+/// Instruction counts of the same program and the same boxes differ by no more than this share.
+inline constexpr double kCountTolerance = 0.001;
+/// The margin with which a difference is claimed if, and only if, it exceeds kCountTolerance.
+inline constexpr double kCountMargin = (1 + kCountTolerance) * (1 + kCountTolerance) - 1 + 1e-9;
+
+/// The ratio of two cases' instructions per frame, with an interval of kCountTolerance; nullopt
+/// unless both were counted.
+std::optional<RunRatio> ratioOfInstructions(const CaseResult& before, const CaseResult& after);
 
 /// The ratio of two cases of one run, with alternating repetitions.
 std::optional<RunRatio> ratioWithinRun(const CaseResult& before, const CaseResult& after);
