@@ -347,6 +347,17 @@ std::vector<CLI::Option*> addVariants(CLI::App& app, CaseOptions& cases) {
                     isaChoices())};
 }
 
+CLI::Option* addCount(CLI::App& app, CountOptions& count) {
+  CLI::Option* option = addValue(
+      app, "--count", fmt::format("{}[:FRAMES]", kInstructions),
+      [&](const std::string& text) { count = parseCount(text); }, [&] { return countText(count); },
+      fmt::format("count the instructions of the first {} frames, or as many as stated, instead of "
+                  "measuring times: by the processor's counters, where the system allows them, "
+                  "else under valgrind; on one thread",
+                  CountOptions().frames));
+  return suggestValues(option, {kInstructions});
+}
+
 CLI::Option* addFilter(CLI::App& app, std::string& filter) {
   return addText(app, "--filter", "REGEX", filter, "run only cases with a matching id");
 }

@@ -122,6 +122,8 @@ CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
 std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
 /// Options that select variants: --algorithm, --threads, --isa
 std::vector<CLI::Option*> addVariants(CLI::App&, CaseOptions&);
+/// --count
+CLI::Option* addCount(CLI::App&, CountOptions&);
 /// --filter
 CLI::Option* addFilter(CLI::App&, std::string& filter);
 /// --answer

@@ -142,6 +142,7 @@ void SessionParser::addRun() {
   tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMaxPasses,
                  "unmeasured repetitions before the measured ones"),
       kInspector);
+  tag(addCount(app_, options_.count), kInspector | kExport);
   tag(addPositive(app_, "--time-limit", "SECONDS", policy.frame_limit_seconds,
                   "limit on the mean seconds per frame (the paper's cap)"),
       kInspector);

@@ -32,6 +32,7 @@ struct Options {
   std::vector<std::string> baselines;  ///< additional runs like `before`
   std::vector<fs::path> after;
   ComparisonOptions comparison;
+  std::optional<double> margin;
   bool settle = false;
   fs::path program;                  ///< the build that ran A; "": this one
   std::vector<std::string> plugins;  ///< of cases to settle
@@ -131,7 +132,12 @@ class Settling {
   std::string recording_hash_;
 };
 
-int run(const Options& options) {
+int run(Options options) {
+  if (options.comparison.instructions) {
+    options.comparison.margin = options.margin.value_or(kCountMargin);
+  } else {
+    options.comparison.margin = options.margin.value_or(options.comparison.margin);
+  }
   const std::vector<fs::path> judged = judgedFiles(options);
   if (judged.size() > 1 && !options.outputs.empty()) {
     throw InputError("compare: output files need a single B");
@@ -179,18 +185,34 @@ std::function<int()> add(CLI::App& app) {
       app, "--baseline", "FILE", options->baselines,
       "another run like A (repeatable); with fewer than four cases, three or more runs show how "
       "much runs differ");
-  addShare(app, "--margin", comparison.margin, false,
-           "differences within this share are 'same'; at most --fail-above");
+  addValue(
+      app, "--margin", "SHARE",
+      [=](const std::string& text) { options->margin = parseShare(text, "--margin", false); },
+      [] { return fmt::format("{:.12g}%", 100 * ComparisonOptions{}.margin); },
+      fmt::format("differences within this share are 'same'; at most --fail-above; of "
+                  "instructions: {:.1g} % by default",
+                  100 * kCountTolerance));
   addShare(app, "--fail-above", comparison.fail_above, false,
            "a case is a regression if it is slower by more than this share");
+  CLI::Option* count = addValue(
+      app, "--count", kInstructions,
+      [=](const std::string& text) {
+        static_cast<void>(parseCount(text));
+        options->comparison.instructions = true;
+      },
+      [] { return std::string(); },
+      "compare the instructions per frame instead of the times: of runs with --count, or "
+      "where the processor counted them");
   app.add_flag("--fail-undecided", comparison.fail_undecided, "fail if any case is undecided");
   app.add_option("--by", comparison.by,
                  "compare cases that differ in this (algorithm, threads, isa or a parameter) with "
                  "the first such case of A, instead of each case with itself")
       ->type_name("NAME");
-  CLI::Option* settle = app.add_flag(
-      "--settle", options->settle,
-      "decide undecided cases by duels of --baseline-program and this program, which ran B");
+  CLI::Option* settle =
+      app.add_flag(
+             "--settle", options->settle,
+             "decide undecided cases by duels of --baseline-program and this program, which ran B")
+          ->excludes(count);
   addPath(app, "--baseline-program", "PROGRAM", options->program,
           "for --settle: the build of broadmark that ran A")
       ->needs(settle);

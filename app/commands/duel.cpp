@@ -61,7 +61,8 @@ struct Options : RunRequest {
     ComparisonOptions comparison;
     const double default_limit =
         hasBaseline() ? comparison.fail_above : std::numeric_limits<double>::infinity();
-    comparison.margin = 2 * duel.precision;
+    comparison.instructions = count.instructions;
+    comparison.margin = count.instructions ? kCountMargin : 2 * duel.precision;
     comparison.fail_above = fail_above.value_or(default_limit);
     comparison.fail_undecided = fail_undecided;
     return comparison;
@@ -88,8 +89,11 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   const auto add = [&](const HostOptions& hosts, const std::string& where) {
     for (const std::string& variant : options.variants) {
       sides.push_back({variant + where,
-                       caseNamed(variant, options.cases.device, options.cases.answer),
+                       options.count.instructions
+                           ? countedCaseNamed(variant, options)
+                           : caseNamed(variant, options.cases.device, options.cases.answer),
                        executorFactory(hosts)});
+      if (options.count.instructions) requireOneThread({sides.back().test_case});
     }
   };
   add(options.hosts, "");
@@ -100,6 +104,44 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   }
   if (sides.size() < 2) throw InputError(kTooFewSides);
   return sides;
+}
+
+/// The instructions of a side. Throws Interrupted.
+CaseResult instructionsOf(const DuelSide& side, IndexedFrames& recording,
+                          const RunRequest& options) {
+  CaseResult result = beginCase(side.test_case, {.scene = recording.scene()});
+  result.id = side.name;
+  CaseRun case_run(side.test_case, options.policy, side.make_executor, InterruptGuard::requested);
+  Oracle oracle;
+  if (!runRepetition(result, case_run, recording, oracle,
+                     {.cancelled = InterruptGuard::requested})) {
+    throw Interrupted();
+  }
+  return result;
+}
+
+/// Compares the instructions of all sides with those of the first. Counts hardly vary: each side
+/// runs once.
+int countVariants(Options options, const std::vector<DuelSide>& sides, IndexedFrames& recording) {
+  Comparison comparison{.command = "duel", .options = options.comparison()};
+  std::vector<CaseResult> results;
+  std::vector<Status> statuses;
+  for (const DuelSide& side : sides) {
+    const CaseResult& result = results.emplace_back(instructionsOf(side, recording, options));
+    statuses.push_back(result.status);
+    if (result.status != Status::ok) {
+      comparison.notes.push_back(
+          fmt::format("{}: {}: {}", result.id, statusName(result.status), result.reason));
+    }
+    if (results.size() == 1) continue;
+    comparison.cases.push_back(compareInstructions(results.front(), result, comparison.options));
+  }
+  if (!useStandardOutput(options.outputs)) fmt::print("{}", formatComparison(comparison));
+  writeComparison(options.outputs, comparison);
+  const bool can_compare = std::ranges::count(statuses, Status::unsupported) == 0;
+  const int status = exitStatusOf(statuses);
+  if (status != exit_status::success) return status;
+  return can_compare ? comparison.exitStatus() : exit_status::bad_input;
 }
 
 int exitStatusOf(const DuelResult& result) {
@@ -126,9 +168,11 @@ void printWarnings(const std::vector<DuelSide>& sides) {
 
 /// A duel of several variants on one source, which ranks them.
 int runVariants(Options options) {
+  prepareCount(options);
   const std::vector<DuelSide> sides = sidesOf(options);
   Source source = open(options);
   const std::unique_ptr<IndexedFrames> recording = openFrames(source, options);
+  if (options.count.instructions) return countVariants(std::move(options), sides, *recording);
   printWarnings(sides);
   constexpr double kTicks = 1000;
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
@@ -167,8 +211,8 @@ class Suite {
       : options_(options),
         plan_(planOf(options)),
         comparison_{.command = "duel", .options = options.comparison()},
-        make_executor_(executorFactory(options.hosts)) {
-    HostOptions hosts = options.hosts;
+        make_executor_(executorFactory(plan_.request.hosts)) {
+    HostOptions hosts = plan_.request.hosts;
     hosts.program = options.program;
     make_baseline_executor_ = executorFactory(hosts);
     if (!options.program.empty()) requireWorks(make_baseline_executor_);
@@ -249,7 +293,9 @@ class Suite {
     for (const Case& test_case : entry.cases) {
       if (!options_.hasBaseline() && &test_case == entry.cases.data()) continue;
       const DuelSide after = side_of(test_case, make_executor_);
-      for (const std::string& warning : warnings_.warningsFor(test_case)) addNote(warning);
+      if (!options_.count.instructions) {
+        for (const std::string& warning : warnings_.warningsFor(test_case)) addNote(warning);
+      }
       const std::optional<Case> baseline =
           options_.hasBaseline() ? baselineOf(test_case) : entry.cases.front();
       if (!baseline || !runs(*baseline, make_baseline_executor_, *recording, after.name)) {
@@ -257,8 +303,20 @@ class Suite {
         continue;
       }
       const DuelSide before = side_of(*baseline, make_baseline_executor_);
-      comparison_.cases.push_back(duels.run(before, after, *recording, comparison_.notes));
+      comparison_.cases.push_back(duelOf(before, after, *recording, duels));
     }
+  }
+
+  CaseComparison duelOf(const DuelSide& before, const DuelSide& after, IndexedFrames& recording,
+                        DuelSeries& duels) {
+    if (!options_.count.instructions) {
+      return duels.run(before, after, recording, comparison_.notes);
+    }
+    const CaseResult a = instructionsOf(before, recording, plan_.request);
+    CaseComparison compared = compareInstructions(
+        a, instructionsOf(after, recording, plan_.request), comparison_.options);
+    duels.finish(compared);
+    return compared;
   }
 
   /// The case in the baseline plug-in; nullopt if that has no such case.
@@ -333,6 +391,7 @@ void requireNoSelection(const Options& options) {
 }
 
 int run(Options options) {
+  options.policy.check = options.duel.check;
   OutputFiles files;
   for (const std::string& word : options.words) {
     if (std::filesystem::exists(word)) files.addSource(word);
@@ -399,6 +458,7 @@ std::function<int()> add(CLI::App& app) {
           return fmt::format("{}, or {} for each case of a suite", kMaxSeconds, kMaxSecondsOfCase);
         },
         "end a duel after this many seconds");
+    addCount(app, options->count);
     addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
              "checks of the first pass: full: exact pair sets; hash: counts and hashes; off");
   }

@@ -47,15 +47,10 @@ CaseComparison DuelSeries::run(const DuelSide& before, const DuelSide& after,
         static_cast<std::uint64_t>(kStepsPerDuel * (static_cast<double>(finished_) + share)));
   };
   const DuelResult result = runInterruptibleDuel({before, after}, recording, options_);
-  ++finished_;
   CaseComparison compared = compareSides(result, 0, 1, comparison_);
-  if (!quiet_) {
-    const std::string effort =
-        result.ok() ? fmt::format("; {} in {}", progressText(result), durationText(result.seconds))
-                    : "";
-    progress_.printError(fmt::format("{}: {}{}", after.name, verdictText(compared), effort));
-  }
-  progress_.update(finished_ * static_cast<std::uint64_t>(kStepsPerDuel));
+  finish(compared,
+         result.ok() ? fmt::format("; {} in {}", progressText(result), durationText(result.seconds))
+                     : "");
   const std::uint32_t frames = recording.scene().frames;
   if (result.ok() && result.rounds() < frames) {
     notes.push_back(
@@ -63,6 +58,14 @@ CaseComparison DuelSeries::run(const DuelSide& before, const DuelSide& after,
                     after.name, result.rounds(), frames));
   }
   return compared;
+}
+
+void DuelSeries::finish(const CaseComparison& compared, const std::string& effort) {
+  ++finished_;
+  if (!quiet_) {
+    progress_.printError(fmt::format("{}: {}{}", compared.id, verdictText(compared), effort));
+  }
+  progress_.update(finished_ * static_cast<std::uint64_t>(kStepsPerDuel));
 }
 
 }  // namespace broadmark::commands

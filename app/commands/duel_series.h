@@ -31,6 +31,9 @@ class DuelSeries {
   CaseComparison run(const DuelSide& before, const DuelSide& after, FrameSource& recording,
                      std::vector<std::string>& notes);
 
+  /// Reports the verdict on the next case. `effort`: what it took, if known.
+  void finish(const CaseComparison& compared, const std::string& effort = {});
+
  private:
   std::size_t finished_ = 0;
   DuelOptions options_;

@@ -81,14 +81,23 @@ void requireKnown(const std::string& by, const Results& results) {
   }
 }
 
-std::vector<ConditionDifference> differencesOf(const Candidate& before, const Candidate& after) {
+/// What counted the instructions of a case. A timed case may have counts of the processor.
+std::string_view counterOf(const CaseResult& result) {
+  return kCounterSources.nameOf(result.conditions.counted_by.value_or(CounterSource::processor));
+}
+
+std::vector<ConditionDifference> differencesOf(const Candidate& before, const Candidate& after,
+                                               bool instructions) {
   std::vector<ConditionDifference> differences;
   const auto compare = [&](std::string_view name, const auto& a, const auto& b, bool refused) {
     if (a != b) differences.push_back({fmt::format("{}: {} -> {}", name, a, b), refused});
   };
   const Environment& a = before.environment();
   const Environment& b = after.environment();
-  compare("processor", a.cpu, b.cpu, true);
+  // valgrind's processor is everywhere the same.
+  const bool is_simulated =
+      instructions && before.result->conditions.counted_by == CounterSource::valgrind;
+  compare("processor", a.cpu, b.cpu, !is_simulated);
   compare("build type", a.build_type, b.build_type, true);
   compare("compiler", a.compiler, b.compiler, false);
   compare("compiler's options", a.compiler_flags, b.compiler_flags, false);
@@ -97,6 +106,10 @@ std::vector<ConditionDifference> differencesOf(const Candidate& before, const Ca
   const Conditions& d = after.result->conditions;
   compare("check", kCheckModes.nameOf(c.check), kCheckModes.nameOf(d.check), false);
   compare("in process", c.in_process, d.in_process, false);
+  if (instructions) {
+    compare("instructions counted by", counterOf(*before.result), counterOf(*after.result), true);
+    compare("frames counted", before.result->frames.size(), after.result->frames.size(), true);
+  }
   compare("plug-in's options", c.plugin.flags, d.plugin.flags, false);
   return differences;
 }
@@ -122,7 +135,7 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
   CaseComparison compared{.id = b.id,
                           .baseline = a.id == b.id ? "" : a.id,
                           .verdict = Verdict::not_timed,
-                          .conditions = differencesOf(before.front(), after),
+                          .conditions = differencesOf(before.front(), after, options.instructions),
                           .status_before = a.status,
                           .status_after = b.status,
                           .reason = b.reason,
@@ -137,11 +150,24 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
   return compared;
 }
 
+/// Sets the ratio and the verdict, unless there are no counts.
+void judgeInstructions(CaseComparison& compared, const CaseResult& before, const CaseResult& after,
+                       const ComparisonOptions& options) {
+  compared.ratio = ratioOfInstructions(before, after);
+  compared.instructions = true;
+  if (compared.ratio) compared.verdict = verdictOn(compared.ratio->ratio, options);
+}
+
 /// Adds notes on a run as a whole: whether it is partial, and what may have disturbed it.
-void addNotes(const NamedResults& named, std::vector<std::string>& notes) {
+void addNotes(const NamedResults& named, const ComparisonOptions& options,
+              std::vector<std::string>& notes) {
   const auto add = [&](const std::string& text) { notes.push_back(named.name + ": " + text); };
   if (!named.results.complete) add("partial: the run did not finish");
   std::set<std::string> warnings;
+  if (!options.instructions &&
+      !std::ranges::all_of(named.results.cases, [](const CaseResult& r) { return r.timed(); })) {
+    add("has instructions instead of times: compare them with --count instructions");
+  }
   for (const CaseResult& result : named.results.cases) {
     if (!result.isComplete()) {
       add(fmt::format("{}: {} of {} repetitions", result.id, result.repetitions.size(),
@@ -173,7 +199,7 @@ class Matching {
       if (matched_.contains(key)) continue;
       cases_.push_back({.id = before_.at(key).front().result->id, .verdict = Verdict::missing});
     }
-    compareTimes();
+    if (!options.instructions) compareTimes();
   }
 
   std::vector<CaseComparison> takeCases() { return std::move(cases_); }
@@ -186,6 +212,10 @@ class Matching {
       if (!options_.by.empty() && before.front().result->id == after.result->id) return;
       cases_.push_back(compareCase(before, after, options_));
       if (cases_.back().verdict != Verdict::not_timed) return;
+      if (options_.instructions) {
+        judgeInstructions(cases_.back(), *before.front().result, *after.result, options_);
+        return;
+      }
       PairedCase& paired = timed_.emplace_back();
       timed_cases_.push_back(cases_.size() - 1);
       paired.after = after.result;
@@ -285,8 +315,8 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
                           const ComparisonOptions& options) {
   if (!options.by.empty()) requireKnown(options.by, after.results);
   Comparison comparison{.options = options};
-  for (const NamedResults& named : before) addNotes(named, comparison.notes);
-  addNotes(after, comparison.notes);
+  for (const NamedResults& named : before) addNotes(named, options, comparison.notes);
+  addNotes(after, options, comparison.notes);
   comparison.cases = Matching(before, after, comparison.options).takeCases();
   const double drift = comparison.drift().value_or(0);
   if (std::abs(drift) > options.margin) {
@@ -315,6 +345,20 @@ CaseComparison compareSides(const DuelResult& result, std::size_t before, std::s
                             .ratio = result.ratio(after, before),
                             .drift = std::nullopt};
   compared.verdict = verdictOn(compared.ratio->ratio, options);
+  return compared;
+}
+
+CaseComparison compareInstructions(const CaseResult& before, const CaseResult& after,
+                                   const ComparisonOptions& options) {
+  CaseComparison compared{.id = after.id,
+                          .baseline = before.id == after.id ? "" : before.id,
+                          .verdict = verdictOnStatus(before.status, after.status),
+                          .status_before = before.status,
+                          .status_after = after.status,
+                          .reason = after.reason};
+  if (compared.verdict == Verdict::not_timed) {
+    judgeInstructions(compared, before, after, options);
+  }
   return compared;
 }
 

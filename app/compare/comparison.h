@@ -17,7 +17,7 @@ namespace broadmark {
 /// A condition that affects times and differs between two cases.
 struct ConditionDifference {
   std::string what;      ///< "build type: Release -> Debug"
-  bool refused = false;  ///< times are compared only with any_conditions
+  bool refused = false;  ///< compared only with any_conditions
 };
 
 /// Comparison of a case, which may be missing in one of the runs.
@@ -32,6 +32,7 @@ struct CaseComparison {
   std::string reason = {};             ///< of status_after
   std::optional<RunRatio> ratio = {};  ///< if the case is ok in both
   bool by_duel = false;                ///< whether the ratio is that of a duel
+  bool instructions = false;           ///< whether the ratio is of instructions, not of times
   // In the compared results; null in a duel.
   const CaseResult* before = nullptr;
   const CaseResult* after = nullptr;
@@ -43,6 +44,7 @@ struct ComparisonOptions {
   /// "": each case is compared with itself. Else with the first case of A that differs at most in
   /// this: "algorithm", "threads", "isa" or a parameter.
   std::string by;
+  bool instructions = false;    ///< judge instruction counts instead of times
   bool any_conditions = false;  ///< ignore ConditionDifference::refused
   bool allow_missing = false;   ///< cases that are only in A are not failures
   bool fail_undecided = false;
@@ -82,6 +84,10 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
 /// Judges side `after` of a duel, B, against side `before`, A.
 CaseComparison compareSides(const DuelResult&, std::size_t before, std::size_t after,
                             const ComparisonOptions&);
+
+/// Judges the instructions of `after`, B, against those of `before`, A. Ids may differ.
+CaseComparison compareInstructions(const CaseResult& before, const CaseResult& after,
+                                   const ComparisonOptions&);
 
 /// Verdict in words: "ok -> timeout", "1.5 % slower".
 std::string verdictText(const CaseComparison&);

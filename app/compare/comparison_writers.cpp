@@ -1,6 +1,7 @@
 // Formats comparisons: as a human-readable table, and as files for other programs.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +17,16 @@
 namespace broadmark {
 namespace {
 
+/// A time, or a number of instructions.
+std::string amountText(const CaseComparison& compared, double amount) {
+  return compared.instructions ? fmt::format("{:.0f}", amount) : durationText(amount);
+}
+
 /// A, B, B/A and its interval.
 std::vector<std::string> timeCells(const CaseComparison& compared) {
   if (!compared.ratio) return std::vector<std::string>(4);
   const RunRatio& ratio = *compared.ratio;
-  return {durationText(ratio.before), durationText(ratio.after),
+  return {amountText(compared, ratio.before), amountText(compared, ratio.after),
           fmt::format("{:.3f}", ratio.ratio.value), intervalText(ratio.ratio.ci95, 3)};
 }
 
@@ -57,9 +63,17 @@ std::string escapedForMarkdown(std::string_view text) {
   return escaped(text, {{'|', "\\|"}, {'\n', " "}, {'\r', " "}});
 }
 
+/// The columns of a table.
+std::vector<std::string> columnsOf(const Comparison& comparison) {
+  if (comparison.options.instructions) {
+    return {"case", "instructions of A", "of B", "B/A", "tolerance", "verdict"};
+  }
+  return {"case", "A", "B", "B/A", "95 % interval", "verdict"};
+}
+
 std::string markdown(const Comparison& comparison) {
   std::string text =
-      "| case | A | B | B/A | 95 % interval | verdict |\n|---|--:|--:|--:|--:|---|\n";
+      fmt::format("| {} |\n|---|--:|--:|--:|--:|---|\n", fmt::join(columnsOf(comparison), " | "));
   for (const CaseComparison& compared : comparison.cases) {
     text += fmt::format("| `{}`{} |", escapedForMarkdown(compared.id),
                         compared.baseline.empty()
@@ -93,8 +107,9 @@ Json caseToJson(const Comparison& comparison, const CaseComparison& compared) {
                {"drift", nullptr},
                {"conditions", Json::array()}};
   if (const auto& ratio = compared.ratio) {
-    json["seconds_before"] = ratio->before;
-    json["seconds_after"] = ratio->after;
+    const char* unit = compared.instructions ? "instructions" : "seconds";
+    json[fmt::format("{}_before", unit)] = ratio->before;
+    json[fmt::format("{}_after", unit)] = ratio->after;
     json["ratio"] = ratio->ratio.value;
     const auto [low, high] = ratio->ratio.ci95;
     if (std::isfinite(high)) json["ci95"] = {low, high};
@@ -123,17 +138,19 @@ std::string json(const Comparison& comparison) {
 std::string csv(const Comparison& comparison) {
   std::string text =
       "id,baseline,verdict,status_before,status_after,seconds_before,seconds_after,ratio,ci95_low,"
-      "ci95_high,drift\n";
+      "ci95_high,drift,instructions_before,instructions_after\n";
   for (const CaseComparison& compared : comparison.cases) {
     text += fmt::format("{},{},{},{},{}", csvField(compared.id), csvField(compared.baseline),
                         kVerdicts.nameOf(compared.verdict), statusName(compared.status_before),
                         statusName(compared.status_after));
     if (const auto& ratio = compared.ratio) {
-      text += fmt::format(",{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{}\n", ratio->before, ratio->after,
+      const std::string amounts = fmt::format("{:.9g},{:.9g}", ratio->before, ratio->after);
+      text += fmt::format(",{},{:.6g},{:.6g},{:.6g},{},{}\n", compared.instructions ? "," : amounts,
                           ratio->ratio.value, ratio->ratio.ci95.low, ratio->ratio.ci95.high,
-                          ratio->drift ? fmt::format("{:.6g}", *ratio->drift) : "");
+                          ratio->drift ? fmt::format("{:.6g}", *ratio->drift) : "",
+                          compared.instructions ? amounts : ",");
     } else {
-      text += ",,,,,,\n";
+      text += ",,,,,,,,\n";
     }
   }
   return text;
@@ -154,9 +171,9 @@ bool isSkipped(const CaseComparison& compared) {
 
 std::string testCase(const Comparison& comparison, const CaseComparison& compared) {
   const std::string verdict = escapedForXml(messageText(compared));
-  std::string text =
-      fmt::format("  <testcase classname=\"broadmark\" name=\"{}\" time=\"{:.9f}\"",
-                  escapedForXml(compared.id), compared.ratio ? compared.ratio->after : 0);
+  std::string text = fmt::format(
+      "  <testcase classname=\"broadmark\" name=\"{}\" time=\"{:.9f}\"", escapedForXml(compared.id),
+      compared.ratio && !compared.instructions ? compared.ratio->after : 0);
   if (comparison.fails(compared)) {
     return text + fmt::format("><failure message=\"{}\"/></testcase>\n", verdict);
   }
@@ -202,8 +219,7 @@ std::string github(const Comparison& comparison) {
 }  // namespace
 
 std::string formatComparison(const Comparison& comparison) {
-  std::vector<std::vector<std::string>> rows = {
-      {"case", "A", "B", "B/A", "95 % interval", "verdict"}};
+  std::vector<std::vector<std::string>> rows = {columnsOf(comparison)};
   for (const CaseComparison& compared : comparison.cases) {
     std::vector<std::string>& row = rows.emplace_back(timeCells(compared));
     const std::string& baseline = compared.baseline;

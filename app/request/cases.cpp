@@ -217,14 +217,15 @@ static std::size_t pluginPrefixLength(const std::string& name) {
   return 0;
 }
 
-Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer) {
+Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer,
+               const VariantDefaults& defaults) {
   const std::size_t begin = pluginPrefixLength(name);
   std::vector<std::string> plugins;
   if (begin > 0) plugins.push_back(name.substr(0, begin - 1));
   const std::vector<std::string> parts = splitAt('/', name.substr(begin));
   const Algorithm algorithm = requireAlgorithm(parts.front(), availableAlgorithms(plugins));
 
-  Case test_case = makeCase(algorithm, bestIsa(), allCores(), device, {}, answer);
+  Case test_case = makeCase(algorithm, defaults.isa, defaults.threads, device, {}, answer);
   for (std::size_t i = 1; i < parts.size(); ++i) applyNamePart(test_case, parts[i], name);
   makeInstance(test_case);  // throws for bad parameters
   return test_case;

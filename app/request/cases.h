@@ -39,12 +39,17 @@ std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selector
 std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
                               const std::vector<Algorithm>& known);
 
+/// What a case's name may omit.
+struct VariantDefaults {
+  Isa isa = bestIsa();
+  int threads = allCores();
+};
+
 /// Parses a case name as written by caseName(): "kd-mt/avx2/t4/events/margin=0.1". An algorithm of
 /// a plug-in is prefixed with its library's file or SDK name: "libmine.so:my-sweep",
-/// "jolt:jolt-quadtree". Omitted parts default to the best instruction set, to allCores() and to
-/// `answer`. Throws InputError.
+/// "jolt:jolt-quadtree". Omitted parts default to `defaults` and to `answer`. Throws InputError.
 Case caseNamed(const std::string& name, const std::string& device,
-               AnswerKind answer = AnswerKind::pairs);
+               AnswerKind answer = AnswerKind::pairs, const VariantDefaults& defaults = {});
 
 /// Returns the algorithm with this id, or null.
 const Algorithm* findAlgorithm(std::string_view id, const std::vector<Algorithm>& known);

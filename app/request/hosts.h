@@ -12,6 +12,7 @@ struct HostOptions {
   bool in_process = false;
   std::filesystem::path program;  ///< build of this program that workers execute; "": this one
   double hard_limit_seconds = 60;
+  bool valgrind = false;                   ///< workers run under valgrind: see prepareCount()
   bool pin = false;                        ///< bind each thread of a worker to its own core
   std::optional<double> memory_limit_gib;  ///< nothing: the machine's memory
 };

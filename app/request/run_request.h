@@ -15,6 +15,7 @@
 #include "broadmark/parameters.h"
 #include "broadmark/render/picture.h"
 #include "request/cases.h"
+#include "request/count.h"
 #include "request/hosts.h"
 #include "request/reading_options.h"
 #include "request/repetitions.h"
@@ -61,6 +62,7 @@ struct RunRequest {
 
   RepetitionOptions repetitions;
   RunPolicy policy;
+  CountOptions count;
   HostOptions hosts;
   bool allow_timeout = false;  ///< exceeded time limits do not fail the run
 

@@ -154,18 +154,23 @@ Plan makePlan(const RunRequest& request, PlanUse use) {
 
 Plan makePlan(const RunRequest& request, PlanUse use, std::vector<Algorithm> algorithms) {
   Plan plan{.request = request, .algorithms = std::move(algorithms)};
+  if (use == PlanUse::run) prepareCount(plan.request);
   for (const std::string& source : request.sources) addSource(plan, source, use);
+  const CaseOptions& cases = plan.request.cases;
   std::vector<Case> selected;
-  if (use == PlanUse::run || !request.cases.algorithms.empty()) {
-    selected = selectCases(request.cases, request.parameters, plan.algorithms);
+  if (use == PlanUse::run || !cases.algorithms.empty()) {
+    selected = selectCases(cases, request.parameters, plan.algorithms);
   }
-  for (PlanEntry& entry : plan.entries) addCases(entry, selected, request.cases);
+  for (PlanEntry& entry : plan.entries) addCases(entry, selected, cases);
   if (request.sources.empty()) plan.cases = selected;
   requireParametersUsed(plan);
   requireReadingUsed(request.reading, plan.entries);
   validateParameters(plan);
   if (use == PlanUse::run) {
     applyFilterAndShard(plan);
+    for (const PlanEntry& entry : plan.entries) {
+      if (request.count.instructions) requireOneThread(entry.cases);
+    }
     requireFrames(plan);
     nameScreenshots(plan);
   }

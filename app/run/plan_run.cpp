@@ -127,7 +127,10 @@ class PlanRun {
     PlannedCase planned{.test_case = &test_case, .result = beginCase(test_case, source.reference)};
     planned.result.conditions = commonConditions();
     planned.result.conditions.plugin = test_case.algorithm.plugin_build;
-    planned.result.conditions.warnings = warnings_.warningsFor(test_case);
+    // Noise distorts times only.
+    if (!request_.policy.counted_by) {
+      planned.result.conditions.warnings = warnings_.warningsFor(test_case);
+    }
     return planned;
   }
 
@@ -135,7 +138,7 @@ class PlanRun {
   bool runPasses(IndexedFrames& recording, Oracle& oracle) {
     const RepetitionOptions& repetitions = request_.repetitions;
     const SceneInfo& scene = recording.scene();
-    const std::uint64_t steps_of_pass = scene.frames;
+    const std::uint64_t steps_of_pass = std::min(scene.frames, request_.policy.max_frames);
     const auto passes = static_cast<std::uint64_t>(repetitions.passes());
     observer_.onTaskStart(fmt::format("running {} N{}", scene.name, scene.objects),
                           steps_of_pass * passes * cases_.size());
@@ -258,7 +261,8 @@ std::uint64_t stepsOf(const Plan& plan) {
   const auto passes = static_cast<std::uint64_t>(plan.request.repetitions.passes());
   std::uint64_t steps = 0;
   for (const PlanEntry& entry : plan.entries) {
-    steps += passes * entry.cases.size() * entry.source.reference.scene.frames;
+    steps += passes * entry.cases.size() *
+             std::min(entry.source.reference.scene.frames, plan.request.policy.max_frames);
   }
   return steps;
 }

@@ -24,16 +24,26 @@ std::size_t width(std::string_view text) {
 /// Key of the column that shows only parameters that differ between cases.
 constexpr std::string_view kParameters = "params";
 
+constexpr std::string_view kInstructionsColumn = "instructions_per_frame";
+
 /// A result with its summary, computed once.
 struct Row {
   const CaseResult* result;
   Summary summary;
 
-  [[nodiscard]] bool isTimed() const {
-    return std::ranges::any_of(result->repetitions,
-                               [](const Repetition& pass) { return !pass.frames.empty(); });
+  /// Whether there are times, or counts.
+  [[nodiscard]] bool isMeasured() const {
+    return std::ranges::any_of(result->repetitions, [&](const Repetition& pass) {
+      return !pass.frames.empty() || !result->timed();
+    });
   }
-  [[nodiscard]] bool isCorrect() const { return isTimed() && result->status == Status::ok; }
+  [[nodiscard]] bool isCorrect() const { return isMeasured() && result->status == Status::ok; }
+  /// The median time, or the instructions per frame.
+  [[nodiscard]] double cost() const {
+    if (!isMeasured()) return std::numeric_limits<double>::infinity();
+    if (result->timed()) return summary.median;
+    return result->perFrame(ProcessorCounter::instructions).value_or(0);
+  }
 };
 
 std::vector<Row> sortedRows(std::span<const CaseResult> results) {
@@ -42,9 +52,8 @@ std::vector<Row> sortedRows(std::span<const CaseResult> results) {
   // Correct results first, by median, as disturbances distort the mean; self-checks, which find no
   // pairs, last.
   std::ranges::stable_sort(rows, {}, [](const Row& row) {
-    const bool self_check = row.isTimed() && !row.result->checked;
-    const double untimed = std::numeric_limits<double>::infinity();
-    return std::tuple(self_check, !row.isCorrect(), row.isTimed() ? row.summary.median : untimed);
+    const bool self_check = row.isMeasured() && !row.result->checked;
+    return std::tuple(self_check, !row.isCorrect(), row.cost());
   });
   return rows;
 }
@@ -140,6 +149,11 @@ std::string formatTable(std::span<const CaseResult> results) {
   if (std::ranges::none_of(results, is_varied)) {
     std::erase_if(columns, [](const CaseColumn* column) { return column->key == kParameters; });
   }
+  // The results of a run hold either times or instructions.
+  const bool timed = std::ranges::any_of(results, &CaseResult::timed);
+  std::erase_if(columns, [timed](const CaseColumn* column) {
+    return timed ? column->key == kInstructionsColumn : column->unit == ColumnUnit::seconds;
+  });
   std::vector<std::vector<std::string>> table = {{""}};
   std::vector<bool> right_aligned = {false};
   for (const CaseColumn* column : columns) {
