@@ -122,7 +122,7 @@ Case caseFrom(const Json& json, const AlgorithmFinder& find) {
   const auto isa = json.at("isa").get<std::string>();
   Case test_case{.algorithm = find(json.at("algorithm").get<std::string>(),
                                    json.at("plugin").get<std::string>()),
-                 .threads = json.at("threads").get<int>(),
+                 .threads = integerOf<int>(json.at("threads")),
                  .device = json.at("device").get<std::string>(),
                  .parameters = json.at("parameters").get<ParameterValues>()};
   if (json.value("plugin_hash", test_case.algorithm.plugin_build.hash) !=
@@ -151,8 +151,8 @@ Json toJson(const SceneInfo& scene) {
 SceneInfo sceneFrom(const Json& json) {
   SceneInfo scene{.name = json.at("name").get<std::string>(),
                   .object_type = json.at("object_type").get<std::string>(),
-                  .objects = json.at("objects").get<std::uint32_t>(),
-                  .frames = json.at("frames").get<std::uint32_t>(),
+                  .objects = integerOf<std::uint32_t>(json.at("objects")),
+                  .frames = integerOf<std::uint32_t>(json.at("frames")),
                   .all_present = json.at("all_present").get<bool>(),
                   .filter_changes = json.at("filter_changes").get<bool>()};
   json.at("world").at(0).get_to(scene.world.min);
@@ -190,10 +190,11 @@ CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::ui
   read("worlds", &BodyGroups::world);
   read("layers", &BodyGroups::layer);
   LayerMatrix matrix;
-  const auto rows = json.at("matrix").get<std::vector<std::uint32_t>>();
+  const Json& rows = json.at("matrix");
   for (std::size_t a = 0; a < std::min(rows.size(), LayerMatrix::kLayers); ++a) {
+    const auto row = integerOf<std::uint32_t>(rows.at(a));
     for (std::size_t b = 0; b < LayerMatrix::kLayers; ++b) {
-      if ((rows[a] >> b & 1) != 0) matrix.set(a, b);
+      if ((row >> b & 1) != 0) matrix.set(a, b);
     }
   }
   return {groups, matrix, scene.filter_changes};

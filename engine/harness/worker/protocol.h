@@ -135,6 +135,17 @@ Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offs
 CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
                            const SceneInfo& scene);
 
+/// An integer of a message. Throws HostError for other values and those out of range, whose
+/// conversion by the JSON library is undefined.
+template <class Integer>
+Integer integerOf(const Json& value) {
+  try {
+    return JsonFields::integerOf<Integer>(value, "message");
+  } catch (const InputError& error) {
+    throw HostError(error.what());
+  }
+}
+
 /// The known values of a table's names.
 template <class Table, class Values>
 Json namedToJson(const Table& table, const Values& values) {
@@ -149,7 +160,7 @@ template <class Table, class Values>
 void readNamed(const Json& json, const Table& table, Values& values) {
   for (const auto& [key, name] : table.entries) {
     using Value = typename decltype(std::optional(values[key]))::value_type;
-    if (json.contains(name)) values[key] = json.at(std::string(name)).template get<Value>();
+    if (json.contains(name)) values[key] = integerOf<Value>(json.at(std::string(name)));
   }
 }
 

@@ -85,7 +85,7 @@ class Server {
     const auto counters = kCounterSources.find(message.value("counters", std::string()))
                               .value_or(CounterSource::processor);
     executor_.emplace(worker::caseFrom(message, find_), message.value("pin", false), counters);
-    const auto limit = message.at("memory_limit_bytes").get<std::uint64_t>();
+    const auto limit = worker::integerOf<std::uint64_t>(message.at("memory_limit_bytes"));
     // Sanitizers reserve more than the machine has, and cannot be limited.
     const std::uint64_t used = statusBytes("VmData").value_or(0);
     if (limit != 0 && limit < used && used < machineMemory()) {
@@ -129,19 +129,20 @@ class Server {
 
   /// Copies the frame from shared memory to private memory.
   Frame readFrame(const Json& message) {
-    frames_.read(changed_, message.at("changed").get<std::size_t>());
+    frames_.read(changed_, worker::integerOf<std::size_t>(message.at("changed")));
     frames_.read(changed_boxes_, changed_.size(), changed_.size() * sizeof(std::uint32_t));
     for (std::size_t i = 0; i < changed_.size(); ++i) {
       boxes_.at(changed_[i]) = changed_boxes_[i];
     }
-    Frame frame{message.at("frame").get<std::uint32_t>(), boxes_, changed_};
+    Frame frame{worker::integerOf<std::uint32_t>(message.at("frame")), boxes_, changed_};
     if (filter_changes_) readFilterChanges(message, frame);
     return frame;
   }
 
   void readFilterChanges(const Json& message, Frame& frame) {
     const std::uint64_t ids_offset = changed_.size() * (sizeof(std::uint32_t) + sizeof(Aabb));
-    frames_.read(filter_changed_, message.at("filter_changed").get<std::size_t>(), ids_offset);
+    frames_.read(filter_changed_, worker::integerOf<std::size_t>(message.at("filter_changed")),
+                 ids_offset);
     frames_.read(groups_, filter_changed_.size(),
                  ids_offset + filter_changed_.size() * sizeof(std::uint32_t));
     if (std::ranges::any_of(filter_changed_,

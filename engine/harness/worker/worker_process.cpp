@@ -113,7 +113,9 @@ class Connection {
 
   void checkVersion() {
     const std::optional<Json> greeting = receive(options_.begin_limit);
-    const int version = greeting ? greeting->value("protocol", 0) : 0;
+    const int version = greeting && greeting->contains("protocol")
+                            ? worker::integerOf<int>(greeting->at("protocol"))
+                            : 0;
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
     if (!greeting) {
@@ -208,7 +210,7 @@ class WorkerProcess final : public CaseExecutor {
          {"scene", worker::toJson(scene)},
          {"filter", worker::writeFilter(scene.filter, connection_->frames, end)}});
     report_.pinned = started.value("pinned", false);
-    return started.at("initialize_ns").get<std::int64_t>();
+    return worker::integerOf<std::int64_t>(started.at("initialize_ns"));
   }
 
   StepResult step(const Frame& frame) override {
@@ -221,7 +223,7 @@ class WorkerProcess final : public CaseExecutor {
                                            {"frame", frame.index},
                                            {"changed", frame.changed->size()},
                                            {"filter_changed", frame.filter_changed.size()}});
-    StepResult result{.pairs = answer.at("pairs").get<std::uint64_t>()};
+    StepResult result{.pairs = worker::integerOf<std::uint64_t>(answer.at("pairs"))};
     worker::readNamed(answer.at("times_ns"), kPhases, result.times);
     return result;
   }
@@ -232,11 +234,11 @@ class WorkerProcess final : public CaseExecutor {
     if (!isOpen()) return;
     const Json stopped = call("stop");
     if (!options_.valgrind && !report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
-      report_.peak_bytes = stopped.at("peak_bytes").get<std::uint64_t>();
+      report_.peak_bytes = worker::integerOf<std::uint64_t>(stopped.at("peak_bytes"));
     }
     report_.heap_bytes.reset();
     if (stopped.contains("heap_bytes")) {
-      report_.heap_bytes = stopped.at("heap_bytes").get<std::uint64_t>();
+      report_.heap_bytes = worker::integerOf<std::uint64_t>(stopped.at("heap_bytes"));
     }
     report_.processor = {};
     worker::readNamed(stopped.value("processor", Json::object()), kProcessorCounters,
@@ -247,28 +249,28 @@ class WorkerProcess final : public CaseExecutor {
 
   PairDigest digest() override {
     const Json digest = call("digest");
-    return {.count = digest.at("count").get<std::uint64_t>(),
-            .hash = digest.at("hash").get<std::uint64_t>()};
+    return {.count = worker::integerOf<std::uint64_t>(digest.at("count")),
+            .hash = worker::integerOf<std::uint64_t>(digest.at("hash"))};
   }
 
   PairRuns answer() override {
-    connection_->answers.read(answer_, call("answer").at("pairs").get<std::size_t>());
+    connection_->answers.read(answer_, worker::integerOf<std::size_t>(call("answer").at("pairs")));
     answer_run_ = answer_;
     return {&answer_run_, 1};
   }
 
   PairEvents events() override {
     const Json counts = call("events");
-    connection_->answers.read(answer_, counts.at("began").get<std::size_t>());
-    connection_->answers.read(ended_, counts.at("ended").get<std::size_t>(),
+    connection_->answers.read(answer_, worker::integerOf<std::size_t>(counts.at("began")));
+    connection_->answers.read(ended_, worker::integerOf<std::size_t>(counts.at("ended")),
                               answer_.size() * sizeof(Pair));
     answer_run_ = answer_;
     ended_run_ = ended_;
     return {{&answer_run_, 1}, {&ended_run_, 1}};
   }
 
-  Counts counters() override { return call("counters").at("counts").get<Counts>(); }
-  Counts setup() override { return call("setup").at("counts").get<Counts>(); }
+  Counts counters() override { return countsOf("counters"); }
+  Counts setup() override { return countsOf("setup"); }
   std::string validate() override { return call("validate").at("broken").get<std::string>(); }
 
   RecordedDrawing structure() override {
@@ -276,14 +278,15 @@ class WorkerProcess final : public CaseExecutor {
     std::vector<RecordedDrawing::Box> boxes;
     std::vector<RecordedDrawing::Segment> lines;
     std::vector<std::uint32_t> tests;
-    connection_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
+    connection_->answers.read(boxes, worker::integerOf<std::size_t>(drawn.at("boxes")));
     std::uint64_t end = boxes.size() * sizeof(RecordedDrawing::Box);
-    connection_->answers.read(lines, drawn.at("lines").get<std::size_t>(), end);
+    connection_->answers.read(lines, worker::integerOf<std::size_t>(drawn.at("lines")), end);
     end += lines.size() * sizeof(RecordedDrawing::Segment);
-    connection_->answers.read(tests, drawn.value("tests", std::size_t{0}),
-                              end);  // not in older versions
-    return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
-            std::move(tests)};
+    if (drawn.contains("tests")) {  // not in older versions
+      connection_->answers.read(tests, worker::integerOf<std::size_t>(drawn.at("tests")), end);
+    }
+    return {std::move(boxes), std::move(lines),
+            worker::integerOf<std::size_t>(drawn.at("left_out")), std::move(tests)};
   }
 
  private:
@@ -319,6 +322,15 @@ class WorkerProcess final : public CaseExecutor {
 
   /// A call without arguments.
   Json call(const char* name) { return connection_->call({{"call", name}}); }
+
+  Counts countsOf(const char* call_name) {
+    Counts counts;
+    const Json answer = call(call_name);
+    for (const auto& [counter, count] : answer.at("counts").items()) {
+      counts[counter] = worker::integerOf<std::uint64_t>(count);
+    }
+    return counts;
+  }
 
   Case case_;
   WorkerOptions options_;
