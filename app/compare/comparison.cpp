@@ -115,7 +115,9 @@ std::vector<ConditionDifference> differencesOf(const Candidate& before, const Ca
 }
 
 Verdict verdictOn(const Estimate& ratio, const ComparisonOptions& options) {
-  const Verdict verdict = verdictOn(ratio.ci95, std::min(options.margin, options.fail_above));
+  double margin = std::min(options.margin, options.fail_above);
+  if (options.instructions) margin = std::max(margin, kCountMargin);  // never undecided
+  const Verdict verdict = verdictOn(ratio.ci95, margin);
   const bool is_tolerated = verdict != Verdict::slower || ratio.value <= 1 + options.fail_above;
   return is_tolerated ? verdict : Verdict::regressed;
 }

@@ -123,6 +123,10 @@ TEST(Count, ADifferenceBeyondTheToleranceIsClaimed) {
   EXPECT_EQ(worse.cases.at(0).verdict, Verdict::regressed);
   EXPECT_EQ(worse.exitStatus(), 3);
   EXPECT_THAT(formatComparison(worse), HasSubstr("106000"));
+  const ComparisonOptions strict{.fail_above = 0, .margin = 0, .instructions = true};
+  EXPECT_EQ(compareInstructions(before, before, strict).verdict, Verdict::same);
+  EXPECT_EQ(compareInstructions(before, countedCase(1'002'000), strict).verdict,
+            Verdict::regressed);
 }
 
 TEST(Count, CountsOfDifferentOriginAreNotCompared) {

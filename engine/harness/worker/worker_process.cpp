@@ -186,7 +186,7 @@ class Connection {
   [[noreturn]] void fail() {
     const int status = wait();
     if (options_.valgrind && WIFSIGNALED(status) && WTERMSIG(status) == SIGILL) {
-      throw UnsupportedError("valgrind does not know all of its instructions");
+      throw UnsupportedError("an illegal instruction, or one that valgrind does not know (SIGILL)");
     }
     throw HostError(endText(status));
   }
