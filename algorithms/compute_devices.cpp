@@ -34,9 +34,10 @@ std::string describe(const ComputeDevice& device) {
 std::size_t chooseDevice(const std::vector<ComputeDevice>& devices, std::string_view wanted) {
   if (wanted.empty() && !devices.empty()) return 0;
   std::size_t position = 0;
-  const char* const end = wanted.data() + wanted.size();
-  const auto number = std::from_chars(wanted.data(), end, position);
-  if (number.ec == std::errc() && number.ptr == end && position < devices.size()) return position;
+  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), position);
+  if (error == std::errc() && end == wanted.data() + wanted.size() && position < devices.size()) {
+    return position;
+  }
   const std::string part(wanted);
   const auto found = std::ranges::find_if(devices, [&](const ComputeDevice& device) {
     return ::strcasestr(device.name.c_str(), part.c_str()) != nullptr ||

@@ -153,17 +153,15 @@ std::int64_t LineReader::integer(std::string_view text, std::string_view what) c
 
 bool parseReal(std::string_view text, double& number) {
   text = withoutPlus(text);
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc::result_out_of_range) number = hugeOrTiny(std::string(text));
-  return error != std::errc::invalid_argument && rest == end;
+  return error != std::errc::invalid_argument && end == text.data() + text.size();
 }
 
 bool parseInteger(std::string_view text, std::int64_t& number) {
   text = withoutPlus(text);
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && rest == end;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
 }
 
 std::string_view trimmed(std::string_view text) {

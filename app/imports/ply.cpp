@@ -136,9 +136,12 @@ class PlyHeaderReader {
   void addElement() {
     if (words_.size() != 3) fail("'element NAME COUNT' is expected");
     PlyElement element{.name = std::string(words_[1])};
-    const char* end = words_[2].data() + words_[2].size();
-    const auto [rest, error] = std::from_chars(words_[2].data(), end, element.count);
-    if (error != std::errc() || rest != end) fail("its count is not a number of rows");
+    const std::string_view count = words_[2];
+    const auto [end, error] =
+        std::from_chars(count.data(), count.data() + count.size(), element.count);
+    if (error != std::errc() || end != count.data() + count.size()) {
+      fail("its count is not a number of rows");
+    }
     if (std::ranges::find(elements, element.name, &PlyElement::name) != elements.end()) {
       fail(fmt::format("a second element '{}'", onOneLine(element.name)));
     }

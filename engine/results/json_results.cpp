@@ -38,9 +38,11 @@ Json toJson(const Environment& environment) {
 
 Environment environmentFrom(const JsonFields& json) {
   Environment environment;
-  visitFields(environment, [&](std::string_view key, auto& value) {
-    const bool is_newer = key == "host" || key == "compute_devices";  // missing in the first files
-    if (!is_newer || json.has(key.data())) json.read(key.data(), value);
+  visitFields(environment, [&](const char* key, auto& value) {
+    const std::string_view name = key;
+    const bool is_newer =
+        name == "host" || name == "compute_devices";  // missing in the first files
+    if (!is_newer || json.has(key)) json.read(key, value);
   });
   return environment;
 }
