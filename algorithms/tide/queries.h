@@ -107,7 +107,7 @@ struct CellBlock {
     is_second |= kSecond[axis] & kAxisBytes << 8 * axis;
   }
   const BucketVector packed = (~is_second & in_first) | (is_second & in_second);
-  std::memcpy(query.buckets, &buckets, sizeof(buckets));
+  std::memcpy(static_cast<void*>(query.buckets), &buckets, sizeof(buckets));
   std::memcpy(query.packed, &packed, sizeof(packed));
   query.active = kActive[axesWhere(block.has_second)];
 }
