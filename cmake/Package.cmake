@@ -28,9 +28,9 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # linked libraries
 
 # Recommended: libraries loaded at run time, if present. Suggested: dependencies for building with the
-# libraries, an OpenCL device without a GPU, the Python package.
+# libraries, an OpenCL device without a GPU, the Python package, counting instructions.
 set(recommended "")
-set(suggested cmake g++ make libbullet-dev libfmt-dev)
+set(suggested cmake g++ make libbullet-dev libfmt-dev valgrind)
 if(BROADMARK_RENDER)
   list(APPEND recommended libegl1 libosmesa6)
 endif()
