@@ -189,5 +189,7 @@ def test_few_algorithms_need_the_program(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr("broadmark.native.find_program", not_found)
     assert broadmark.overlaps(boxes).tolist() == [[0, 1]]
-    with pytest.raises(broadmark.InputError, match="dbvt-d: runs in a process of the program broadmark"):
+    with pytest.raises(
+        broadmark.InputError, match="dbvt-d: runs in a process of the program broadmark"
+    ):
         broadmark.overlaps(boxes, "dbvt-d")
