@@ -170,14 +170,9 @@ TEST(Session, AutomaticRepetitions) {
   EXPECT_FALSE(session({}).repetitions.until_precise);
 }
 
-TEST(Session, FormerNamesAreAcceptedWithALine) {
-  testing::internal::CaptureStderr();
+TEST(Session, FormerNamesAreAccepted) {
   const SessionOptions options = session({"--repetitions", "auto", "--most-seconds=60", "--param",
                                           "tide:from_scratch_cost=50", "--param", "crowded=7"});
-  EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "broadmark: '--most-seconds' is now called '--max-seconds'\n"
-            "broadmark: 'from_scratch_cost' is now called 'full_search_cost_scale'\n"
-            "broadmark: 'crowded' is now called 'split_threshold'\n");
   EXPECT_EQ(options.repetitions.max_seconds, 60);
   EXPECT_EQ(options.parameters,
             (ParameterValues{{"tide:full_search_cost_scale", "50"}, {"split_threshold", "7"}}));

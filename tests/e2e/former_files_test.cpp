@@ -36,5 +36,19 @@ TEST_F(FormerFiles, SceneParametersAreSimulated) {
   EXPECT_EQ(readJson(file("now.json")).at("cases").at(0).at("status"), "ok");
 }
 
+TEST_F(FormerFiles, FormerNamesAreNotedOnce) {
+  const ProgramResult ended =
+      run({"--headless", "freefall.json", "--algorithm", "tide,columns", "--repetitions", "auto",
+           "--most-seconds=60", "--param", "tide:from_scratch_cost=50", "--param", "crowded=7"});
+  EXPECT_EQ(ended.status, 0);
+  for (const char* note : {"'--most-seconds' is now called '--max-seconds'\n",
+                           "'from_scratch_cost' is now called 'full_search_cost_scale'\n",
+                           "'crowded' is now called 'split_threshold'\n"}) {
+    const std::size_t first = ended.err.find(note);
+    ASSERT_NE(first, std::string::npos) << note << ended.err;
+    EXPECT_EQ(ended.err.find(note, first + 1), std::string::npos) << note;
+  }
+}
+
 }  // namespace
 }  // namespace broadmark::tests
