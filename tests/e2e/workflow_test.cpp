@@ -95,7 +95,10 @@ TEST_F(Workflow, RunsStepByStep) {
       continue;
     }
     ++commands;
-    EXPECT_EQ(runStep(step.at("run")), 0) << readFile(file("shell.out"));
+    const int status = runStep(step.at("run"));
+    // A duel judges measured times: on a busy machine it may claim a difference.
+    const bool is_duel = step.at("name") == "Duel";
+    EXPECT_TRUE(status == 0 || (is_duel && status == 3)) << status << readFile(file("shell.out"));
   }
   EXPECT_EQ(commands, 4U);
   EXPECT_THAT(readFile(file("summary.md")), HasSubstr("| `FreeFall/Cubes/N2000/F60"));
