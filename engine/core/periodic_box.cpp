@@ -42,9 +42,9 @@ double gapAlong(const Aabb& a, const Aabb& b, int axis) {
 
 std::optional<double> numberIn(std::string_view text) {
   double number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || rest != end || !(std::abs(number) <= kLargestFloat)) return {};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  if (!is_number || !(std::abs(number) <= kLargestFloat)) return {};
   return number;
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "adapters/adapter.h"
+#include "adapters/mapped_pairs.h"
 #include "adapters/occupancy_bitmap.h"
 #include "adapters/remapping_debug_draw.h"
 #include "adapters/world_lattice.h"
@@ -66,21 +67,15 @@ class CompactingAdapter final : public Adapter {
   }
 
   void cleanCache() override {
-    for (PairBuffer& pairs : pairs_) pairs.clear();
-    runs_.clear();
+    pairs_.clear();
     algorithm_->cleanCache();
   }
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
-    const PairRuns found = algorithm_->overlaps();
-    if (pairs_.size() < found.size()) pairs_.resize(found.size());
-    team_->run(found.size(), [&](int, Range runs) {
-      for (std::size_t i = runs.begin; i < runs.end; ++i) mapToBodies(found[i], pairs_[i]);
-    });
-    runs_.clear();
-    for (std::size_t i = 0; i < found.size(); ++i) runs_.push_back(pairs_[i].run());
+    pairs_.map(*team_, algorithm_->overlaps(), bodies_,
+               [this](Pair indices, Pair bodies) { return isWanted(indices, bodies); });
   }
-  [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+  [[nodiscard]] PairRuns overlaps() const override { return pairs_.runs(); }
   void drawStructure(DebugDraw& draw) const override {
     RemappingDebugDraw remapped(draw, bodies_);
     algorithm_->drawStructure(remapped);
@@ -239,22 +234,6 @@ class CompactingAdapter final : public Adapter {
     if (worlds_->translates()) true_boxes_.pop_back();
   }
 
-  void mapToBodies(PairRun found, PairBuffer& result) const {
-    result.clear();
-    Pair* const room = result.room(found.size());
-    std::size_t count = 0;
-    for (const Pair pair : found) {
-      if (pair.a >= pair.b || pair.b >= bodies_.size()) [[unlikely]] {
-        room[count++] = {kAbsent, kAbsent};  // keeps an invalid pair invalid
-        continue;
-      }
-      const Pair bodies = orderedPair(bodies_[pair.a], bodies_[pair.b]);
-      room[count] = bodies;
-      count += isWanted(pair, bodies) ? 1 : 0;
-    }
-    result.advance(count);
-  }
-
   /// Tests the true boxes: rounding of translated ones can create an overlap.
   [[nodiscard]] bool isWanted(Pair indices, Pair bodies) const {
     if (!filter_.wanted(bodies.a, bodies.b)) return false;
@@ -285,8 +264,7 @@ class CompactingAdapter final : public Adapter {
   std::vector<std::uint32_t> index_of_;   ///< index by body id; kAbsent: inactive
   std::vector<std::uint32_t> changed_;    ///< indices with changed boxes in this frame, ascending
   std::vector<std::uint8_t> is_changed_;  ///< by index, for sortChanged()
-  std::vector<PairBuffer> pairs_;         ///< one buffer per run of the algorithm's answer
-  std::vector<PairRun> runs_;
+  MappedPairs pairs_;
 };
 
 }  // namespace

@@ -11,11 +11,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "adapters/adapter.h"
+#include "adapters/mapped_pairs.h"
 #include "adapters/remapping_debug_draw.h"
 #include "broadmark/adapters.h"
 
@@ -79,15 +79,10 @@ class PeriodicAdapter final : public Adapter {
 
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
-    const PairRuns found = algorithm_->overlaps();
-    if (pairs_.size() < found.size()) pairs_.resize(found.size());
-    execution_->team().run(found.size(), [&](int, Range runs) {
-      for (std::size_t i = runs.begin; i < runs.end; ++i) mapToBodies(found[i], pairs_[i]);
-    });
-    runs_.clear();
-    for (std::size_t i = 0; i < found.size(); ++i) runs_.push_back(pairs_[i].run());
+    pairs_.map(execution_->team(), algorithm_->overlaps(), owners_,
+               [this](Pair images, Pair bodies) { return isWanted(images, bodies); });
   }
-  [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+  [[nodiscard]] PairRuns overlaps() const override { return pairs_.runs(); }
 
   void drawStructure(DebugDraw& draw) const override {
     RemappingDebugDraw remapped(draw, owners_);
@@ -99,7 +94,7 @@ class PeriodicAdapter final : public Adapter {
   }
 
  private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNone = MappedPairs::kNoBody;
   static constexpr std::size_t kMinSlots = 64;
 
   [[nodiscard]] std::size_t slots() const { return boxes_.size() - bodies_; }
@@ -155,25 +150,8 @@ class PeriodicAdapter final : public Adapter {
     }
   }
 
-  void mapToBodies(PairRun found, PairBuffer& result) const {
-    result.clear();
-    Pair* const room = result.room(found.size());
-    std::size_t count = 0;
-    for (const Pair pair : found) {
-      const bool exists = pair.a < pair.b && pair.b < boxes_.size() && owners_[pair.a] != kNone &&
-                          owners_[pair.b] != kNone;
-      if (!exists) [[unlikely]] {
-        room[count++] = {kNone, kNone};  // keeps an invalid pair invalid
-        continue;
-      }
-      const Pair bodies = orderedPair(owners_[pair.a], owners_[pair.b]);
-      room[count] = bodies;
-      count += isWanted(pair, bodies) ? 1 : 0;
-    }
-    result.advance(count);
-  }
-
   [[nodiscard]] bool isWanted(Pair images, Pair bodies) const {
+    if (bodies.b == kNone) return true;  // an unused slot: stays invalid
     // A pair within the margin could be one that overlaps in another way, too.
     if (margin_ > 0 && !broadmark::overlaps(boxes_[images.a], boxes_[images.b])) return false;
     return (images.b < bodies_ || isFirstOfImages(images)) && filter_.wanted(bodies.a, bodies.b);
@@ -218,8 +196,7 @@ class PeriodicAdapter final : public Adapter {
   std::vector<std::uint32_t> freed_;    ///< slots, in this frame
   std::vector<std::uint32_t> changed_;  ///< ids with other boxes than in the frame before
   bool has_grown_ = false;              ///< there are more slots than the algorithm knows
-  std::vector<PairBuffer> pairs_;       ///< one buffer per run of the algorithm's answer
-  std::vector<PairRun> runs_;
+  MappedPairs pairs_;
 };
 
 }  // namespace
