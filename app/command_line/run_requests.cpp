@@ -138,7 +138,8 @@ std::vector<std::string> argumentsOf(std::string_view text, const std::string& n
     const CLI::Option& option = *options[static_cast<std::size_t>(found - keys.begin())];
     if (option.count() > 0 || value.is_null() || value == false) continue;
     const std::string path = fields.path(key.c_str());
-    if (option.get_items_expected_max() == 0 && !(takesOptionalValue(option) && value != true)) {
+    const bool may_have_value = option.get_items_expected_max() > 0 || takesOptionalValue(option);
+    if (!may_have_value || (value == true && takesOptionalValue(option))) {
       if (value != true) throw InputError(path + ": true or false is expected");
       arguments.push_back(option.get_name());
       continue;

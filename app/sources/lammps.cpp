@@ -24,6 +24,7 @@ constexpr std::string_view kItem = "ITEM: ";
 struct FrameHeader {
   std::int64_t atoms = -1;  ///< -1: not stated
   std::optional<Cell> cell;
+  std::array<bool, 3> repeats{};  ///< periodic boundaries, along each edge of the cell
 };
 
 /// Names of columns of positions, the best first: unwrapped ones before those that image flags
@@ -181,6 +182,7 @@ class DumpFormat final : public imports::TextFormat {
     ColumnNames names(words);
     const ParticleColumns columns = columnsOf(lines, names, header, radius_);
     if (names_line != described_) describe(names, names_line);
+    setPeriodic(lines, header.cell.value_or(Cell()), header.repeats);
     imports::readParticles(lines, frame, header.atoms, columns, radius_,
                            header.cell.value_or(Cell()));
     return true;
@@ -214,7 +216,7 @@ class DumpFormat final : public imports::TextFormat {
 
   void readSection(LineReader& lines, const std::string& item, FrameHeader& header) {
     if (item.starts_with("BOX BOUNDS")) {
-      header.cell = readBounds(lines, item.substr(std::string_view("BOX BOUNDS").size()));
+      readBounds(lines, item.substr(std::string_view("BOX BOUNDS").size()), header);
     } else if (item == "NUMBER OF ATOMS") {
       lines.require("a number of atoms");
       header.atoms = lines.integer(imports::trimmed(lines.line()), "the number of atoms");
@@ -233,7 +235,7 @@ class DumpFormat final : public imports::TextFormat {
   }
 
   /// The words behind "BOX BOUNDS" name the form of the box, and its boundaries: "pp", "ff".
-  Cell readBounds(LineReader& lines, std::string_view form) {
+  static void readBounds(LineReader& lines, std::string_view form, FrameHeader& header) {
     std::vector<std::string_view> words;
     imports::splitWords(form, words);
     const auto starts_with = [&](std::initializer_list<std::string_view> start) {
@@ -251,13 +253,10 @@ class DumpFormat final : public imports::TextFormat {
                       "expected",
                       imports::quoted(word)));
     }
-    const Cell cell = is_general ? generalCell(lines) : boundedCell(lines, is_slanted);
-    std::array<bool, 3> repeats{};
     for (std::size_t axis = 0; axis < std::min<std::size_t>(words.size(), 3); ++axis) {
-      repeats[axis] = words[axis].starts_with('p');
+      header.repeats[axis] = words[axis].starts_with('p');
     }
-    if (!words.empty()) setPeriodic(lines, cell, repeats);
-    return cell;
+    header.cell = is_general ? generalCell(lines) : boundedCell(lines, is_slanted);
   }
 
   double radius_;

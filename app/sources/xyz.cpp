@@ -126,21 +126,19 @@ class XyzFormat final : public imports::TextFormat {
   void describeBoundaries(const LineReader& lines, const Values& values) {
     const auto lattice = values.find("lattice");
     const auto boundaries = values.find("pbc");
-    // A lattice alone means boundaries that are all periodic.
-    std::array<bool, 3> repeats{true, true, true};
+    std::array<bool, 3> repeats{};
     if (boundaries != values.end()) {
       std::vector<std::string_view> words;
       imports::splitWords(boundaries->second, words);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < 3 && !words.empty(); ++axis) {
         // One word may stand for all axes.
-        const std::string_view word = words.empty() ? "F" : words[std::min(axis, words.size() - 1)];
-        repeats[axis] = word.find_first_of("Tt1") == 0;
+        repeats[axis] = words[std::min(axis, words.size() - 1)].find_first_of("Tt1") == 0;
       }
-    } else if (lattice == values.end() || !is_periodic_) {
-      return;
+    } else if (is_periodic_ && lattice != values.end()) {
+      repeats.fill(true);  // a lattice alone means boundaries that are all periodic
     }
     Cell cell;
-    if (is_periodic_) {
+    if (is_periodic_ && std::ranges::count(repeats, true) > 0) {
       if (lattice == values.end()) lines.fail("--periodic: pbc needs a Lattice");
       const std::vector<double> edges = numbersIn(lines, *lattice, 9);
       for (std::size_t i = 0; i < 9; ++i) cell.edges[i / 3][i % 3] = edges[i];

@@ -418,7 +418,13 @@ TEST_F(TextImports, PeriodicBoundariesThatAreNotHonouredAreSaid) {
   EXPECT_THAT(wrong("a.dump", dump("pp pp pp\n0 0\n0 10\n0 10", atoms)), HasSubstr("no extent"));
   EXPECT_THAT(wrong("a.dump", dump("ff ff ff\n0 10\n0 10\n0 10", atoms)),
               HasSubstr("states no periodic box"));
+  for (const char* silent : {"\n0 10\n0 10\n0 10", "ff ff ff\n0 10\n0 10\n0 10"}) {
+    EXPECT_THAT(wrong("a.dump", frame + dump(silent, atoms)),
+                HasSubstr("the periodic box is -,-,-"));
+  }
   const std::string particles = "Properties=species:S:1:pos:R:3\nH 9.75 5 5\n";
+  EXPECT_THAT(wrong("a.xyz", "1\nLattice=\"9 0 0 0 9 0 0 0 9\" " + particles + "1\n" + particles),
+              HasSubstr("the periodic box is -,-,-"));
   EXPECT_THAT(wrong("a.xyz", "1\npbc=\"T T T\" " + particles), HasSubstr("Lattice"));
   EXPECT_THAT(wrong("a.xyz", "1\nLattice=\"1 2 3\" " + particles), HasSubstr("9 numbers"));
   EXPECT_THAT(wrong("a.xyz", "1\n" + particles), HasSubstr("states no periodic box"));
