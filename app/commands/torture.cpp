@@ -55,9 +55,9 @@ struct Options : RunRequest {
   bool only_sources = false;
   std::string case_name;  ///< "": all cases
   double minutes = 1;
-  std::optional<std::uint64_t> rounds;  ///< limit that replaces `minutes`
-  std::optional<std::uint64_t> seed;    ///< nothing: that of the log, or 1
-  int jobs = allCores();
+  std::optional<std::uint64_t> rounds;       ///< limit that replaces `minutes`
+  std::optional<std::uint64_t> seed;         ///< nothing: that of the log, or 1
+  int jobs = allCores() + 1;                 ///< the threads of a round often wait for each other
   std::optional<std::uint64_t> served_seed;  ///< this process serves rounds of that seed
   fs::path output = "torture";
   bool quiet = false;

@@ -13,7 +13,7 @@
 namespace broadmark {
 namespace {
 
-constexpr std::size_t kBruteForceLimit = 300;
+constexpr std::size_t kBruteForceLimit = 100;  // above, the sweep is faster
 
 /// Counts every difference and lists the first of each kind.
 void recordPair(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {

@@ -21,7 +21,7 @@ using Generator = std::vector<Aabb> (*)(std::size_t n, std::uint32_t frame, std:
 struct Input {
   std::string_view name;
   Generator boxes;
-  bool all_overlap = false;  ///< every pair of boxes
+  bool all_overlap = false;  ///< every pair of boxes, at least in late frames
 };
 
 using Vec3 = std::array<float, 3>;
@@ -287,15 +287,24 @@ inline std::vector<Aabb> limits(std::size_t n, std::uint32_t frame, std::uint64_
 
 /// Normal, easy and difficult inputs, without `limits`.
 inline constexpr std::array kAll = {
-    Input{"uniform", uniform},     Input{"assorted", assorted},
-    Input{"touching", touching},   Input{"identical", identical, true},
-    Input{"flat", flat},           Input{"zero size", zeroSize},
-    Input{"nested", nested, true}, Input{"huge", huge},
-    Input{"tiny", tiny},           Input{"far away", farAway},
-    Input{"clustered", clustered}, Input{"still", still},
-    Input{"drifting", drifting},   Input{"teleporting", teleporting},
-    Input{"growing", growing},     Input{"two clusters", twoClusters},
-    Input{"one plane", onePlane},  Input{"rods and plates", rodsAndPlates},
+    Input{"uniform", uniform},
+    Input{"assorted", assorted},
+    Input{"touching", touching},
+    Input{"identical", identical, true},
+    Input{"flat", flat},
+    Input{"zero size", zeroSize},
+    Input{"nested", nested, true},
+    Input{"huge", huge},
+    Input{"tiny", tiny},
+    Input{"far away", farAway},
+    Input{"clustered", clustered},
+    Input{"still", still},
+    Input{"drifting", drifting},
+    Input{"teleporting", teleporting},
+    Input{"growing", growing, true},
+    Input{"two clusters", twoClusters},
+    Input{"one plane", onePlane},
+    Input{"rods and plates", rodsAndPlates},
 };
 
 }  // namespace broadmark::inputs

@@ -1,6 +1,7 @@
 #include "torture/random_world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -17,14 +18,12 @@ constexpr const char* kGiven = "given";
 /// Each frame has a random generator.
 constexpr const char* kUnrelated = "unrelated frames";
 
-/// Mostly small: most faults with many bodies also occur with few.
+/// Log-uniform: every scale as often, since most faults with many bodies also occur with few.
 std::size_t randomCount(Random& random, bool all_overlap) {
-  const int size = random.integer(1, 20);
-  int max = 64;
-  if (size == 1) max = 3;
-  if (size > 14) max = 300;
-  if (size == 20 && !all_overlap) max = 1000;
-  return static_cast<std::size_t>(random.integer(0, all_overlap ? std::min(max, 100) : max));
+  const int max = random.onceIn(20) ? 1000 : 300;
+  const double share = static_cast<double>(random.uniform(0, 1));
+  return static_cast<std::size_t>(
+      std::expm1(share * std::log1p(all_overlap ? std::min(max, 100) : max)));
 }
 
 std::uint32_t randomFrameCount(Random& random) {
@@ -142,11 +141,10 @@ RandomWorld largeWorld(Random& random) {
           std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames))};
 }
 
-RandomWorld longWorld(Random& random) {
-  constexpr std::uint32_t kFrames = 300;
+RandomWorld longWorld(Random& random, std::uint32_t frames) {
   constexpr int kMaxBodies = 40;
   const auto bodies = static_cast<std::size_t>(random.integer(2, kMaxBodies));
-  return generatedWorld(random, bodies, kFrames);
+  return generatedWorld(random, bodies, frames);
 }
 
 std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {

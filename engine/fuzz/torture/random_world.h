@@ -19,8 +19,8 @@ RandomWorld randomWorld(inputs::Random& random, const TortureOptions& options);
 
 /// A world of 70,000 bodies: more than 16 bits can number.
 RandomWorld largeWorld(inputs::Random& random);
-/// A world of 300 frames, with few bodies.
-RandomWorld longWorld(inputs::Random& random);
+/// A world of few bodies with that many frames.
+RandomWorld longWorld(inputs::Random& random, std::uint32_t frames);
 
 /// The same world with the bodies in random order.
 std::unique_ptr<IndexedFrames> shuffled(inputs::Random& random, IndexedFrames& frames);

@@ -16,9 +16,13 @@ namespace {
 
 using inputs::Random;
 
-/// Small worlds per round. A device's driver takes about ten times as long for each.
+/// Small worlds per round. Drivers of devices compile kernels for each, which takes fifty times as
+/// long.
 constexpr std::size_t kWorlds = 40;
-constexpr std::size_t kDeviceWorlds = 8;
+constexpr std::size_t kDeviceWorlds = 3;
+/// Frames of a long world.
+constexpr std::uint32_t kFrames = 300;
+constexpr std::uint32_t kDeviceFrames = 60;
 
 constexpr const char* kNotWhenRerun = ", but not when rerun";
 
@@ -54,9 +58,15 @@ ParameterValues randomParameters(Random& random, const Algorithm& algorithm) {
   return changedValues(parameterValues(*instance), *algorithm.create());
 }
 
+/// Algorithms on a device a third as often as others: their rounds take four times as long.
+const Algorithm& randomAlgorithm(Random& random, const std::vector<Algorithm>& algorithms) {
+  const Algorithm& first = random.anyOf(algorithms);
+  return first.traits.on_device && !random.onceIn(3) ? random.anyOf(algorithms) : first;
+}
+
 Case randomCase(Random& random, const std::vector<Algorithm>& algorithms) {
   constexpr std::array kThreads = {1, 2, 3, 5};
-  const Algorithm& algorithm = random.anyOf(algorithms);
+  const Algorithm& algorithm = randomAlgorithm(random, algorithms);
   const Isa isa = random.anyOf(supportedIsas());
   const int threads = random.anyOf(kThreads);
   const AnswerKind answer = random.anyOf(kAnswerKinds.entries).value;
@@ -100,7 +110,8 @@ class Round {
     const std::string& time = case_.algorithm.description.time;
     const bool is_quick = case_.parameters.empty() && !time.starts_with("O(n²") &&
                           time.find("swaps") == std::string::npos;
-    return random_.onceIn(4) && is_quick ? largeWorld(random_) : longWorld(random_);
+    if (random_.onceIn(8) && is_quick) return largeWorld(random_);
+    return longWorld(random_, case_.algorithm.traits.on_device ? kDeviceFrames : kFrames);
   }
 
   /// Detects a leak that is reproducible in a new process: caches of malloc and libraries vary.
