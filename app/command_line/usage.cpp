@@ -58,6 +58,7 @@ HelpGroup::HelpGroup(CLI::App& app, const std::string& heading)
   app.option_defaults()->group(heading);
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): CLI11 accepts a name that it had
 HelpGroup::~HelpGroup() { app_.option_defaults()->group(outer_); }
 
 // CLI11 has no place for suggestions: they are the name of a check that accepts everything.

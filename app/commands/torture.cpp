@@ -281,6 +281,7 @@ class Torture {
         }
       }
     } catch (const Cancelled&) {
+      return;
     } catch (...) {
       stopStarting();
       throw;

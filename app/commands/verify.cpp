@@ -102,7 +102,7 @@ std::string formatFilter(const FilterStatistics& filter) {
   }
   if (filter.changed) {
     text +=
-        fmt::format("  bodies with a new layer or new tags: {} a frame\n", number(*filter.changed));
+        fmt::format("  bodies with a new layer or new tags: {} a frame\n", number(filter.changed));
   }
   return text;
 }

@@ -370,7 +370,7 @@ std::string intervalText(const Interval& interval, int digits) {
 }
 
 std::string verdictText(const CaseComparison& compared) {
-  const std::string verdict(kVerdicts.nameOf(compared.verdict));
+  std::string verdict(kVerdicts.nameOf(compared.verdict));
   const std::string reason = compared.reason.empty() ? "" : ": " + compared.reason;
   if (compared.status_before != compared.status_after) {
     return fmt::format("{} -> {} {}{}", statusName(compared.status_before),

@@ -128,8 +128,8 @@ class ElementFrames final : public IndexedFrames {
                                    mesh.file.string(), which_));
     }
     // The elements of the mesh that this one extends are in the same order among the new ones.
-    static const MeshBodies kNone;
-    const MeshBodies& base = mesh.extends ? meshes_[*mesh.extends] : kNone;
+    static const MeshBodies no_elements;
+    const MeshBodies& base = mesh.extends ? meshes_[*mesh.extends] : no_elements;
     std::size_t known = 0;
     for (const Element& element : added.elements) {
       if (known < base.elements.size() && base.elements[known] == element) {

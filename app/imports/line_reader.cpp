@@ -28,8 +28,8 @@ constexpr std::size_t kFirstBytes = 1 << 16;
 
 /// Parses what from_chars() calls out of range, a correct number: 0 or denormal, or infinite.
 double hugeOrTiny(const std::string& text) {
-  static const locale_t kPlain = ::newlocale(LC_ALL_MASK, "C", nullptr);
-  return ::strtod_l(text.c_str(), nullptr, kPlain);
+  static const locale_t c_locale = ::newlocale(LC_ALL_MASK, "C", nullptr);
+  return ::strtod_l(text.c_str(), nullptr, c_locale);
 }
 
 /// Without a plus sign, which from_chars() does not accept.

@@ -39,7 +39,7 @@ bool isBinaryStl(const FileStart& start) {
 
 bool isObj(const FileStart& start) {
   if (!isText(start.text)) return false;
-  static const std::vector<std::string_view> kOthers = {
+  static const std::vector<std::string_view> other_words = {
       "vt", "vn", "vp", "f", "l", "p", "g", "o", "s", "mg", "mtllib", "usemtl", "#"};
   bool has_vertex = false;
   std::vector<std::string_view> words;
@@ -53,7 +53,7 @@ bool isObj(const FileStart& start) {
     double number = 0;
     if (words[0] == "v" && words.size() >= 4 && parseReal(words[1], number)) {
       has_vertex = true;
-    } else if (std::ranges::find(kOthers, words[0]) == kOthers.end()) {
+    } else if (std::ranges::find(other_words, words[0]) == other_words.end()) {
       return false;
     }
     if (line.ends_with('\\')) break;
@@ -79,7 +79,7 @@ std::string meshFormat(const FileStart& start) {
 
 std::string meshFormat(const std::filesystem::path& path, const std::string& stated) {
   if (stated != "auto") return stated;
-  const std::string format = meshFormat(startOf(path));
+  std::string format = meshFormat(startOf(path));
   if (!format.empty()) return format;
   for (const char* name : {"ply", "obj", "stl"}) {
     if (hasExtension(path, {std::string(".") + name})) return name;

@@ -359,8 +359,8 @@ class PlyReader {
   std::uint64_t readCount(const PlyProperty& property, const PlyElement& element) {
     const double count = readNumber(*property.count_type, element);
     const std::uint64_t left = bytes_.bytesLeft() + (order_ ? 0 : 1);
-    const std::uint64_t item = order_ ? namesOf(property.type).bytes : 2;
-    if (count >= 0 && count == std::floor(count) && count <= static_cast<double>(left / item)) {
+    const std::uint64_t most = left / (order_ ? namesOf(property.type).bytes : 2);
+    if (count >= 0 && count == std::floor(count) && count <= static_cast<double>(most)) {
       return static_cast<std::uint64_t>(count);
     }
     failAtNumber(

@@ -41,8 +41,8 @@ struct Gl {
   explicit Gl(const OffscreenContext& context);
 
 #define BROADMARK_GL_MEMBER(name) \
-  decltype(&::gl##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses): a name
-  BROADMARK_GL_FUNCTIONS(BROADMARK_GL_MEMBER)
+  decltype(&::gl##name) name = nullptr;        // NOLINT(bugprone-macro-parentheses): a name
+  BROADMARK_GL_FUNCTIONS(BROADMARK_GL_MEMBER)  // NOLINT(readability-identifier-naming): GL's names
 #undef BROADMARK_GL_MEMBER
 
   [[nodiscard]] GLint integer(GLenum what) const;
