@@ -33,7 +33,7 @@ void onTerminate() {
   } catch (const std::bad_alloc&) {
     std::fputs("broadmark: out of memory\n", stderr);
     std::_Exit(broadmark::exit_status::bad_input);
-  } catch (...) {
+  } catch (...) {  // NOLINT(bugprone-empty-catch): the previous handler reports it
   }
   previous_terminate_handler();
 }

@@ -33,7 +33,7 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
 
   void onRecordingResults(const PlanEntry& entry, std::span<const CaseResult> results) override {
     end();
-    if (!prints_results_) std::cout << formatTable(results) << std::endl;
+    if (!prints_results_) std::cout << formatTable(results) << '\n' << std::flush;
     if (request_.print_pairs) printPairs(results);
     if (!entry.original) return;
     const fs::path log = entry.original->output_log;

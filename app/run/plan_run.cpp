@@ -114,7 +114,7 @@ class PlanRun {
     } catch (...) {
       try {
         storeResults(entry);
-      } catch (const InputError&) {  // the first error is the one to report
+      } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the first error is reported
       }
       throw;
     }

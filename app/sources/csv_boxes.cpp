@@ -34,7 +34,7 @@ struct Synonyms {
   std::string_view meaning;
   std::vector<std::string_view> names;
 };
-const std::vector<Synonyms> kColumns = {
+const std::vector<Synonyms> column_synonyms = {
     {kFrame, {"frame", "frameid", "frameno", "framenumber", "frameindex"}},
     {kTime, {"time", "t"}},
     {kStep, {"step", "timestep"}},
@@ -42,7 +42,7 @@ const std::vector<Synonyms> kColumns = {
     {kLayer, {"layer", "layerid"}},
 };
 /// Names of parts of a box, before or behind the axis.
-const std::vector<Synonyms> kBoxColumns = {
+const std::vector<Synonyms> box_column_synonyms = {
     {"min_", {"min", "minimum", "mins", "lower", "lowerbound", "low", "lo", "lb", "0"}},
     {"max_", {"max", "maximum", "maxs", "upper", "upperbound", "high", "hi", "ub", "1"}},
     {"centre_", {"centre", "center", "c", "mid"}},
@@ -87,14 +87,14 @@ std::string plainName(std::string_view name) {
 /// Returns what a column of this name holds; "": not known.
 std::string meaningOf(std::string_view name) {
   std::string plain = plainName(name);
-  for (const auto& [meaning, names] : kColumns) {
+  for (const auto& [meaning, names] : column_synonyms) {
     if (std::ranges::find(names, plain) != names.end()) return std::string(meaning);
   }
   for (const std::string_view prefix : {"aabb", "boundingbox", "bbox", "bounds", "box"}) {
     if (plain.starts_with(prefix)) plain.erase(0, prefix.size());
   }
   if (plain.empty()) return {};
-  for (const auto& [part, names] : kBoxColumns) {
+  for (const auto& [part, names] : box_column_synonyms) {
     for (const char axis : kAxes) {
       const bool before = plain.front() == axis;
       if (!before && plain.back() != axis) continue;

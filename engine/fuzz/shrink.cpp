@@ -136,6 +136,7 @@ class Shrinker {
       shrinkToMinimum();
       best_.minimal = true;
     } catch (const Cancelled&) {
+      best_.minimal = false;
     }
     return std::move(best_);
   }

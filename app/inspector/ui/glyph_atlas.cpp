@@ -147,7 +147,8 @@ ImFont* GlyphAtlas::load(ImFontAtlas& atlas, float size, float large_size) {
         improves = missing < missing_;
         missing_ = std::min(missing, missing_);
       }
-    } catch (const InputError&) {  // skips an unreadable font
+    } catch (const InputError&) {
+      improves = false;  // the font is unreadable
     }
     if (!improves) fallbacks_.pop_back();
   }

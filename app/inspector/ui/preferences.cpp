@@ -18,6 +18,7 @@ void readField(const Json& json, const char* key, Value& value) {
   try {
     value = found->get<Value>();
   } catch (const Json::exception&) {
+    return;
   }
 }
 
