@@ -179,7 +179,7 @@ void checkChoice(Enum value, Enum last, const char* name) {
   }
 }
 
-const Options& checked(const Options& options) {
+Options checked(const Options& options) {
   constexpr int kMaxThreads = 1024;
   checkChoice(options.method, Method::columns, "method");
   checkChoice(options.answer, Answer::events, "answer");

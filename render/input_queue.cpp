@@ -12,7 +12,7 @@ namespace broadmark {
 namespace {
 
 #if IMGUI_VERSION_NUM < 18700
-constexpr ImGuiKey_ ImGuiKey_KeypadEnter = ImGuiKey_KeyPadEnter;
+constexpr ImGuiKey_ ImGuiKey_KeypadEnter = ImGuiKey_KeyPadEnter;  // NOLINT: ImGui's later name
 #endif
 
 constexpr std::size_t kKeys = GLFW_KEY_LAST + 1;

@@ -45,16 +45,16 @@ class BuiltinSimulation final : public PhysicsSimulation {
 
   /// Gives all settings still at their defaults for the `former` engine those for the current one.
   void adaptDefaults(const std::string& former) {
-    const auto parametersOf = [](Settings& settings) {
+    const auto parameters_of = [](Settings& settings) {
       std::vector<Parameter> parameters;
       settings.visit([&](const Parameter& parameter) { parameters.push_back(parameter); });
       return parameters;
     };
     Settings before = defaultsFor(former);
     Settings after = defaultsFor(settings_.engine.value);
-    const std::vector<Parameter> old_defaults = parametersOf(before);
-    const std::vector<Parameter> new_defaults = parametersOf(after);
-    const std::vector<Parameter> current = parametersOf(settings_);
+    const std::vector<Parameter> old_defaults = parameters_of(before);
+    const std::vector<Parameter> new_defaults = parameters_of(after);
+    const std::vector<Parameter> current = parameters_of(settings_);
     for (std::size_t i = 0; i < current.size(); ++i) {
       const std::string fresh = parameterText(new_defaults[i]);
       const std::string stale = parameterText(old_defaults[i]);

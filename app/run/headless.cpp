@@ -130,7 +130,7 @@ int runHeadless(Plan plan, bool quiet) {
   for (const PlanEntry& entry : plan.entries) {
     if (!quiet) printImport(entry.source);
   }
-  const InterruptGuard guard;
+  const InterruptGuard interrupts;
   HeadlessRun headless(plan.request, quiet);
   return headless.finish(runPlan(plan, executorFactory(plan.request.hosts), headless));
 }

@@ -24,7 +24,8 @@ int main() {
   std::vector<bp::Box> boxes;
   std::vector<float> speeds(kPillars, 0.0F);
   for (std::uint32_t body = 0; body < kPillars; ++body) {
-    const float x = static_cast<float>(body % 20) * 5, z = static_cast<float>(body / 20) * 5;
+    const std::uint32_t row = body / 20;
+    const float x = static_cast<float>(body % 20) * 5, z = static_cast<float>(row) * 5;
     boxes.push_back({{x, 0, z}, {x + 1, 20, z + 1}});
   }
   const auto crate = [&]() -> bp::Box {

@@ -33,7 +33,7 @@ double distanceOf(const std::string& value) {
   return distance;
 }
 
-const std::array kAdapters{
+const std::array adapters{
     FrameAdapter{"swept", kSweptSuffix,
                  [](SceneInfo scene, const std::string&) { return sweptScene(std::move(scene)); },
                  [](std::unique_ptr<IndexedFrames> frames,
@@ -86,7 +86,7 @@ std::optional<std::span<const std::uint32_t>> AdaptedFrames::changed() const {
 
 ParameterValues adaptersIn(ParameterValues reading) {
   std::erase_if(reading, [](const auto& option) {
-    return std::ranges::find(kAdapters, option.first, &FrameAdapter::option) == kAdapters.end();
+    return std::ranges::find(adapters, option.first, &FrameAdapter::option) == adapters.end();
   });
   return reading;
 }
@@ -94,7 +94,7 @@ ParameterValues adaptersIn(ParameterValues reading) {
 std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
                                        const ParameterValues& reading) {
   const ParameterValues options = optionsFor(frames->scene(), reading);
-  for (const FrameAdapter& adapter : kAdapters) {
+  for (const FrameAdapter& adapter : adapters) {
     const std::string* value = valueOf(adapter, options);
     if (value != nullptr) frames = adapter.wrap(std::move(frames), *value);
   }
@@ -103,7 +103,7 @@ std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
 
 SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading) {
   const ParameterValues options = optionsFor(scene, reading);
-  for (const FrameAdapter& adapter : kAdapters) {
+  for (const FrameAdapter& adapter : adapters) {
     const std::string* value = valueOf(adapter, options);
     if (value != nullptr) scene = adapter.scene(std::move(scene), *value);
   }
@@ -111,7 +111,7 @@ SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading) {
 }
 
 std::string unadaptedName(std::string name, const ParameterValues& reading) {
-  for (const FrameAdapter& adapter : kAdapters | std::views::reverse) {
+  for (const FrameAdapter& adapter : adapters | std::views::reverse) {
     if (valueOf(adapter, reading) == nullptr || !name.ends_with(adapter.suffix)) continue;
     name.resize(name.size() - adapter.suffix.size());
   }
@@ -119,7 +119,7 @@ std::string unadaptedName(std::string name, const ParameterValues& reading) {
 }
 
 std::string adaptedHash(std::string hash, const ParameterValues& reading) {
-  for (const FrameAdapter& adapter : kAdapters) {
+  for (const FrameAdapter& adapter : adapters) {
     const std::string* value = valueOf(adapter, reading);
     if (value == nullptr || *value == kStatedPeriodicBox) continue;  // part of the hash already
     // A flag has no value of its own.

@@ -27,7 +27,8 @@ SceneInfo sceneIn(PeriodicBox box, SceneInfo scene) {
 
 SceneInfo periodicScene(SceneInfo scene, const std::string& box) {
   if (box == kStatedPeriodicBox) {
-    if (scene.periodic.repeats()) return sceneIn(scene.periodic, std::move(scene));
+    const PeriodicBox stated = scene.periodic;
+    if (stated.repeats()) return sceneIn(stated, std::move(scene));
     throw InputError(fmt::format(
         "{}: states no periodic box: give it, as in --periodic=0:10,0:10,-", scene.name));
   }
