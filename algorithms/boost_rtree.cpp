@@ -28,7 +28,9 @@
 #include <boost/geometry/strategies/strategies.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -56,6 +58,10 @@ Value valueOf(const Aabb& box, std::uint32_t body) {
           body};
 }
 
+bool isPresent(const Value& value) {
+  return value.first.min_corner().get<0>() <= value.first.max_corner().get<0>();
+}
+
 class RTree final : public MovedBoxes {
  public:
   explicit RTree(bool incremental) : incremental_(incremental) {}
@@ -69,17 +75,20 @@ class RTree final : public MovedBoxes {
   void updateStructures() override { incremental_ ? update() : pack(); }
 
   [[nodiscard]] std::string validate() const override {
-    return tree_.size() == boxes().size() ? "" : "the tree has not one value for each body";
+    const auto present = std::ranges::count_if(boxes(), std::not_fn(isEmpty));
+    return std::cmp_equal(tree_.size(), present) ? "" : "the tree has not one value for each body";
   }
 
  private:
   /// Builds the tree from all boxes.
   void pack() {
     values_.clear();
+    packed_.clear();
     for (const Aabb& box : boxes()) {
       values_.push_back(valueOf(box, static_cast<std::uint32_t>(values_.size())));
+      if (!isEmpty(box)) packed_.push_back(values_.back());
     }
-    tree_ = Tree(values_);
+    tree_ = Tree(packed_);
   }
 
   void update() {
@@ -87,12 +96,25 @@ class RTree final : public MovedBoxes {
     for (const std::uint32_t body : moved()) {
       const Value value = valueOf(boxes()[body], body);
       if (body < values_.size()) {
-        tree_.remove(values_[body]);
+        if (isPresent(values_[body])) tree_.remove(values_[body]);
         values_[body] = value;
       } else {
         values_.push_back(value);
       }
-      tree_.insert(value);
+      if (isPresent(value)) tree_.insert(value);
+    }
+  }
+
+  void findHits(const QueryBatch& batch) override {
+    for (std::uint32_t i = 0; i < batch.queries.size(); ++i) {
+      const auto add = [&](const Value& found) { pairs().addHit(i, found.second); };
+      const auto found = boost::make_function_output_iterator(add);
+      const Box box = valueOf(batch.queries[i].box, 0).first;
+      if (batch.kind == AnswerKind::boxes) {
+        tree_.query(index::intersects(box), found);
+      } else {
+        tree_.query(index::nearest(box.min_corner(), unsigned{kNearestBodies}), found);
+      }
     }
   }
 
@@ -106,7 +128,8 @@ class RTree final : public MovedBoxes {
   }
 
   bool incremental_;
-  std::vector<Value> values_;  ///< by body: as in the tree
+  std::vector<Value> values_;  ///< by body: as in the tree, and of absent bodies
+  std::vector<Value> packed_;  ///< of the present bodies
   Tree tree_;
 };
 
@@ -115,7 +138,8 @@ class RTree final : public MovedBoxes {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "Boost R-tree",
-      .traits = {.library_allocates = true,
+      .traits = {.queries = {AnswerKind::boxes, AnswerKind::nearest},
+                 .library_allocates = true,
                  .changing_worlds = ChangingWorlds::compacted,
                  .instance_per_world = true},
       .description = {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "simd/overlap_kernels.h"
@@ -58,6 +59,34 @@ class BruteForce final : public SimdBroadPhase {
     });
   }
 
+  void findHits(const QueryBatch& batch) override {
+    team().run(batch.queries.size(), [&](int worker, Range range) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        if (batch.kind == AnswerKind::nearest) {
+          findNearest(index, batch.queries[i], pairs(worker));
+          continue;
+        }
+        for (std::uint32_t body = 0; body < arrays().size(); ++body) {
+          if (hits(batch.kind, batch.queries[i], arrays().box(body))) {
+            pairs(worker).addHit(index, body);
+          }
+        }
+      }
+    });
+  }
+
+  void findNearest(std::uint32_t index, const Query& query, PairBuffer& found) const {
+    std::vector<std::pair<double, std::uint32_t>> distances;
+    for (std::uint32_t body = 0; body < arrays().size(); ++body) {
+      const Aabb box = arrays().box(body);
+      if (!isEmpty(box)) distances.emplace_back(distanceTo(query, box), body);
+    }
+    const std::size_t count = std::min(kNearestBodies, distances.size());
+    std::ranges::partial_sort(distances, distances.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t k = 0; k < count; ++k) found.addHit(index, distances[k].second);
+  }
+
   const OverlapKernels* kernels_ = nullptr;
 };
 
@@ -72,11 +101,16 @@ std::vector<Algorithm> variants() {
           .time = "O(n²)",
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019; Ericson 2005, Real-Time Collision Detection, 7"}};
+  Algorithm scalar = variantOf<BruteForce>(family, "bf", "tests every box against every other");
+  Algorithm threads =
+      variantOf<BruteForce>(family, "bf-mt", "brute force, on several threads", {.parallel = true});
+  scalar.traits.queries = threads.traits.queries = {AnswerKind::boxes, AnswerKind::rays,
+                                                    AnswerKind::sweeps, AnswerKind::nearest};
   return {
-      variantOf<BruteForce>(family, "bf", "tests every box against every other"),
+      scalar,
       variantOf<BruteForce>(family, "bf-simd", "brute force, one box against a vector of boxes",
                             {.vectorised = true}),
-      variantOf<BruteForce>(family, "bf-mt", "brute force, on several threads", {.parallel = true}),
+      threads,
       variantOf<BruteForce>(family, "bf-simd-mt", "brute force, vectorised and on several threads",
                             {.parallel = true, .vectorised = true})};
 }

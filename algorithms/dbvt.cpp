@@ -23,7 +23,9 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -61,6 +63,17 @@ class ScopedMargin {
   float before_;
 };
 
+/// Calls visit(body) for each leaf that a query of Bullet's finds.
+template <class Visit>
+struct Candidates final : btBroadphaseRayCallback {
+  explicit Candidates(Visit each) : visit(each) {}
+  bool process(const btBroadphaseProxy* proxy) override {
+    visit(static_cast<std::uint32_t>(proxy->m_uniqueId) - 1);
+    return true;
+  }
+  Visit visit;
+};
+
 class Dbvt final : public BulletBroadPhase {
  public:
   explicit Dbvt(bool deferred) { tree_.m_deferedcollide = deferred; }
@@ -81,6 +94,11 @@ class Dbvt final : public BulletBroadPhase {
   /// The maximum extent of a leaf beyond its box.
   [[nodiscard]] float margin() const override { return 2 * static_cast<float>(margin_); }
 
+  void answerQueries(AnswerKind) override {
+    answers_queries_ = true;
+    tree_.m_deferedcollide = true;  // else a moved leaf is tested for pairs
+  }
+
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
@@ -92,6 +110,7 @@ class Dbvt final : public BulletBroadPhase {
     for (const std::uint32_t body : bodies) {
       if (proxies_[body] == nullptr) create(body);
     }
+    if (answers_queries_) return;
     updatePairs();
     if (reportsEvents()) gatherEvents();
   }
@@ -155,6 +174,43 @@ class Dbvt final : public BulletBroadPhase {
     }
     updatePairs();
     addPairs(*tree_.m_paircache, [](std::uint32_t, std::uint32_t) { return true; });
+  }
+
+  void findHits(const QueryBatch& batch) override {
+    largest_ = largestCoordinate(boxes());
+    for (std::uint32_t i = 0; i < batch.queries.size(); ++i) {
+      const Query& query = batch.queries[i];
+      Candidates found([&](std::uint32_t body) {
+        if (hits(batch.kind, query, boxes()[body])) pairs().addHit(i, body);
+      });
+      if (batch.kind == AnswerKind::boxes) {
+        tree_.aabbTest(vectorOf(query.box.min), vectorOf(query.box.max), found);
+      } else {
+        cast(query, found);
+      }
+    }
+  }
+
+  /// As btCollisionWorld's rayTest() and convexSweepTest() do, but with a slightly larger box:
+  /// Bullet rounds, and passes over a leaf without thickness at the start of a ray.
+  void cast(const Query& query, btBroadphaseRayCallback& found) {
+    constexpr float kMargin = 16 * std::numeric_limits<float>::epsilon();
+    const btVector3 min = vectorOf(query.box.min);
+    const btVector3 max = vectorOf(query.box.max);
+    const btVector3 start = min / 2 + max / 2;
+    const btVector3 motion = vectorOf(query.motion);
+    const auto length = static_cast<btScalar>(
+        std::hypot(double{motion.x()}, double{motion.y()}, double{motion.z()}));
+    for (int axis = 0; axis < 3; ++axis) {
+      const btScalar direction = length > 0 ? motion[axis] / length : 0;
+      found.m_rayDirectionInverse[axis] = direction == 0 ? BT_LARGE_FLOAT : 1 / direction;
+      found.m_signs[axis] = found.m_rayDirectionInverse[axis] < 0 ? 1 : 0;
+    }
+    found.m_lambda_max = length;
+    const float largest = std::max(largest_, largestCoordinate({&query.box, 1}));
+    const float margin = std::max(kMargin * largest, std::numeric_limits<float>::min());
+    const btVector3 margins(margin, margin, margin);
+    tree_.rayTest(start, start + motion, found, min - start - margins, max - start + margins);
   }
 
   [[nodiscard]] Aabb leafOf(std::uint32_t body) const {
@@ -242,6 +298,8 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   double margin_ = 0.05;  ///< Bullet's default
+  bool answers_queries_ = false;
+  float largest_ = 0;  ///< the largest coordinate, of either sign, when queries are answered
   Changes changes_;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
@@ -255,6 +313,7 @@ std::vector<Algorithm> variants() {
       .family = "DBVT",
       .traits = {.incremental = true,
                  .events = true,
+                 .queries = {AnswerKind::boxes, AnswerKind::rays, AnswerKind::sweeps},
                  .library_allocates = true,
                  .library_aborts = true,
                  .changing_worlds = ChangingWorlds::native,

@@ -28,16 +28,21 @@
 #endif
 #include <fmt/format.h>
 #include <tbb/info.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "broadmark/algorithm.h"
 #include "broadmark/c_deleter.h"
+#include "broadmark/error.h"
 #include "broadmark/reference_pairs.h"
 #include "variants.h"
 
@@ -110,8 +115,11 @@ class Embree final : public BoxBroadPhase {
     updateStructures();
   }
 
+  void answerQueries(AnswerKind) override { answers_queries_ = true; }
+
   void updateStructures() override {
     if (boxes().size() <= kMaxBruteForce) return;
+    if (answers_queries_) enlargeBounds();
     threads_->run([this] {
       rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes().size()));
       rtcCommitGeometry(geometry_.get());
@@ -122,17 +130,29 @@ class Embree final : public BoxBroadPhase {
  private:
   void makeScene(RTCDevice device) {
     scene_.reset(rtcNewScene(device));
-    if (quality_ == RTC_BUILD_QUALITY_LOW) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
+    unsigned flags = quality_ == RTC_BUILD_QUALITY_LOW ? RTC_SCENE_FLAG_DYNAMIC : 0;
+    if (answers_queries_) flags |= RTC_SCENE_FLAG_ROBUST;  // misses no box by rounding
+    rtcSetSceneFlags(scene_.get(), static_cast<RTCSceneFlags>(flags));
     rtcSetSceneBuildQuality(scene_.get(), quality_);
     geometry_.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
     rtcSetGeometryBuildQuality(geometry_.get(), quality_);
     rtcSetGeometryUserData(geometry_.get(), this);
     rtcSetGeometryBoundsFunction(geometry_.get(), giveBounds, nullptr);
+    rtcSetGeometryOccludedFunction(geometry_.get(), reportCrossed);
     rtcAttachGeometry(scene_.get(), geometry_.get());
   }
 
+  /// Rays and distances are rounded: the candidates are those of larger boxes.
+  void enlargeBounds() {
+    constexpr float kMargin = 16 * std::numeric_limits<float>::epsilon();
+    const float largest = largestCoordinate(boxes());
+    if (largest > kMaxBound) throw UnsupportedError("queries beyond the range of Embree");
+    margin_ = kMargin * largest;
+  }
+
   static void giveBounds(const RTCBoundsFunctionArguments* of) {
-    const Aabb& box = static_cast<Embree*>(of->geometryUserPtr)->boxes()[of->primID];
+    const auto& embree = *static_cast<Embree*>(of->geometryUserPtr);
+    const Aabb box = enlarged(embree.boxes()[of->primID], embree.margin_);
     RTCBounds& bounds = *of->bounds_o;
     bounds.lower_x = lowerBoundFor(box.min[0]);
     bounds.lower_y = lowerBoundFor(box.min[1]);
@@ -162,7 +182,103 @@ class Embree final : public BoxBroadPhase {
     }
   }
 
+  void findHits(const QueryBatch& batch) override {
+    batch_ = &batch;
+    const bool brute_force = boxes().size() <= kMaxBruteForce;
+    threads_->run([&] {
+      tbb::parallel_for(std::size_t{0}, batch.queries.size(), [&](std::size_t i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        if (batch.kind == AnswerKind::nearest) {
+          brute_force ? addAll(index) : findNearest(index);
+        } else if (brute_force) {
+          for (std::uint32_t body = 0; body < boxes().size(); ++body) addIfHit(index, body);
+        } else {
+          castRay(index);
+        }
+      });
+    });
+  }
+
+  PairBuffer& ownPairs() { return pairs(tbb::this_task_arena::current_thread_index()); }
+
+  void addIfHit(std::uint32_t query, std::uint32_t body) {
+    if (hits(batch_->kind, batch_->queries[query], boxes()[body])) ownPairs().addHit(query, body);
+  }
+
+  /// Fewer bodies than a query for the nearest ones has.
+  void addAll(std::uint32_t query) {
+    static_assert(kMaxBruteForce <= kNearestBodies);
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+      if (!isEmpty(boxes()[body])) ownPairs().addHit(query, body);
+    }
+  }
+
+  /// A ray that nothing occludes reports all bodies on its way.
+  void castRay(std::uint32_t index) {
+    const Query& query = batch_->queries[index];
+    RTCRay ray{};
+    ray.org_x = query.box.min[0];
+    ray.org_y = query.box.min[1];
+    ray.org_z = query.box.min[2];
+    ray.dir_x = query.motion[0];
+    ray.dir_y = query.motion[1];
+    ray.dir_z = query.motion[2];
+    ray.tfar = 1;
+    ray.mask = ~0U;
+    ray.id = index;
+#if RTC_VERSION_MAJOR < 4
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_.get(), &context, &ray);
+#else
+    rtcOccluded1(scene_.get(), &ray, nullptr);
+#endif
+  }
+
+  static void reportCrossed(const RTCOccludedFunctionNArguments* crossed) {
+    if (crossed->valid[0] == 0) return;
+    auto& embree = *static_cast<Embree*>(crossed->geometryUserPtr);
+    embree.addIfHit(RTCRayN_id(crossed->ray, crossed->N, 0), crossed->primID);
+  }
+
+  /// The nearest bodies so far; the farthest is on top.
+  struct Nearest {
+    const Embree* embree;
+    const Query* query;
+    std::vector<std::pair<double, std::uint32_t>> heap;
+  };
+
+  void findNearest(std::uint32_t index) {
+    const Query& query = batch_->queries[index];
+    Nearest nearest{this, &query, {}};
+    RTCPointQuery point{};
+    point.x = query.box.min[0];
+    point.y = query.box.min[1];
+    point.z = query.box.min[2];
+    point.radius = std::numeric_limits<float>::infinity();
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene_.get(), &point, &context, addNear, &nearest);
+    for (const auto& [distance, body] : nearest.heap) ownPairs().addHit(index, body);
+  }
+
+  /// Returns whether the radius of the search has shrunk.
+  static bool addNear(RTCPointQueryFunctionArguments* found) {
+    auto& [embree, query, heap] = *static_cast<Nearest*>(found->userPtr);
+    heap.emplace_back(distanceTo(*query, embree->boxes()[found->primID]), found->primID);
+    std::ranges::push_heap(heap);
+    if (heap.size() <= kNearestBodies) return false;
+    std::ranges::pop_heap(heap);
+    heap.pop_back();
+    found->query->radius = std::nextafter(static_cast<float>(heap.front().first),
+                                          std::numeric_limits<float>::infinity());
+    return true;
+  }
+
   RTCBuildQuality quality_;
+  bool answers_queries_ = false;
+  float margin_ = 0;
+  const QueryBatch* batch_ = nullptr;  ///< of this frame
   Threads* threads_ = nullptr;
   Scene scene_;
   Geometry geometry_;
@@ -171,14 +287,15 @@ class Embree final : public BoxBroadPhase {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  const Algorithm family = {
-      .family = "Embree",
-      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted},
-      .description = {.principle = "tree",
-                      .optimisations = "wide nodes, tested by vectors",
-                      .time = "O(n log n + k)",
-                      .space = "O(n + k)",
-                      .source = "Embree, rtcCollide; Wald et al. 2014"}};
+  const Algorithm family = {.family = "Embree",
+                            .traits = {.queries = {AnswerKind::rays, AnswerKind::nearest},
+                                       .library_allocates = true,
+                                       .changing_worlds = ChangingWorlds::compacted},
+                            .description = {.principle = "tree",
+                                            .optimisations = "wide nodes, tested by vectors",
+                                            .time = "O(n log n + k)",
+                                            .space = "O(n + k)",
+                                            .source = "Embree, rtcCollide; Wald et al. 2014"}};
   return {variantOf<Embree>(
               family, "embree-morton",
               "Embree's bounding volume hierarchy along a Morton curve, from scratch every frame",

@@ -42,6 +42,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/error.h"
 #include "moved_boxes.h"
 #include "variants.h"
 
@@ -97,8 +98,13 @@ constexpr bool kHasFixedRoom = std::is_same_v<Manager, Array>;
 template <class Manager>
 class Fcl final : public MovedBoxes {
  public:
+  void answerQueries(AnswerKind) override { answers_queries_ = true; }
+
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
+    if (answers_queries_ && !scene.all_present) {
+      throw UnsupportedError("queries in scenes where bodies appear or disappear");
+    }
     MovedBoxes::initialize(scene, first, execution);
     max_bodies_ = scene.objects;
     for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
@@ -157,6 +163,33 @@ class Fcl final : public MovedBoxes {
 
   void findPairs() override { manager_.collide(this, report); }
 
+  /// A query and the algorithm that answers it.
+  struct Search {
+    Fcl* tree;
+    const QueryBatch* batch;
+    std::uint32_t index;
+  };
+
+  void findHits(const QueryBatch& batch) override {
+    for (std::uint32_t i = 0; i < batch.queries.size(); ++i) {
+      Body query(shape_, i);
+      query.place(batch.queries[i].box);
+      Search search{this, &batch, i};
+      manager_.collide(&query, &search, reportHit);
+    }
+  }
+
+  static bool reportHit(fcl::CollisionObjectd* found, fcl::CollisionObjectd* /*query*/,
+                        void* data) {
+    const auto& [tree, batch, index] = *static_cast<Search*>(data);
+    const std::uint32_t body = static_cast<Body*>(found)->number();
+    if (hits(batch->kind, batch->queries[index], tree->boxes()[body])) {
+      tree->pairs().addHit(index, body);
+    }
+    constexpr bool kEnough = false;
+    return kEnough;
+  }
+
   static bool report(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* self) {
     auto& tree = *static_cast<Fcl*>(self);
     const std::uint32_t first = static_cast<Body*>(a)->number();
@@ -168,6 +201,7 @@ class Fcl final : public MovedBoxes {
     return kEnough;
   }
 
+  bool answers_queries_ = false;
   std::shared_ptr<fcl::CollisionGeometryd> shape_ = std::make_shared<fcl::Sphered>(1);
   std::deque<Body> bodies_;  ///< the manager holds their addresses
   Bodies updated_;
@@ -182,6 +216,7 @@ std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "FCL",
       .traits = {.incremental = true,
+                 .queries = {AnswerKind::boxes},
                  .library_allocates = true,
                  .changing_worlds = ChangingWorlds::compacted,
                  .instance_per_world = true},

@@ -317,10 +317,29 @@ std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& optio
   return {size, gl};
 }
 
-CLI::Option* addAnswer(CLI::App& app, AnswerKind& answer) {
-  return addNamed(app, "--answer", "KIND", answer, kAnswerKinds,
-                  "what algorithms report for a frame: pairs: all pairs; events: pairs that began "
-                  "or ended since the previous frame");
+std::vector<CLI::Option*> addAnswer(CLI::App& app, Answer& answer) {
+  CLI::Option* kind = addValue(
+      app, "--answer", "KIND",
+      [&answer](const std::string& text) { answer = parseNamed(text, "--answer", kAnswerKinds); },
+      [&answer] { return answerName(isQuery(answer) ? Answer() : answer); },
+      "what algorithms report for a frame: pairs: all pairs; events: pairs that began or ended "
+      "since the previous frame");
+  suggestValues(kind, kAnswerKinds.names());
+  const auto set = [&answer](const std::string& text) {
+    const std::optional<Answer> found = findAnswer(text);
+    if (!found || !isQuery(*found)) {
+      throw InputError(fmt::format("--queries: '{}': KIND:N is expected, with KIND {}, N 1 to {}",
+                                   text, fmt::join(kQueryKinds.names(), ", "), kMaxQueries));
+    }
+    answer = *found;
+  };
+  CLI::Option* queries = addValue(
+      app, "--queries", "KIND:N", set,
+      [&answer] { return isQuery(answer) ? answerName(answer) : std::string(); },
+      "instead of pairs: answer N queries a frame, such as rays:1000: bodies that overlap boxes, "
+      "that rays cross, that moving boxes (sweeps) touch, or that are nearest to a point");
+  queries->excludes(kind);
+  return {kind, queries};
 }
 
 std::vector<CLI::Option*> addVariants(CLI::App& app, CaseOptions& cases) {

@@ -127,7 +127,7 @@ CLI::Option* addCount(CLI::App&, CountOptions&);
 /// --filter
 CLI::Option* addFilter(CLI::App&, std::string& filter);
 /// --answer
-CLI::Option* addAnswer(CLI::App&, AnswerKind& answer);
+std::vector<CLI::Option*> addAnswer(CLI::App&, Answer& answer);
 /// --device. Help shows it only in builds with OpenCL.
 CLI::Option* addDevice(CLI::App&, std::string& device);
 /// Options of the processes that run cases: --in-process, --pin, --hard-limit, --memory-limit

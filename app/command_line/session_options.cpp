@@ -92,7 +92,9 @@ void SessionParser::addCases() {
   const HelpGroup group(app_, "Algorithms");
   CaseOptions& cases = options_.cases;
   for (const CLI::Option* option : addVariants(app_, cases)) tag(option, kCase);
-  tag(addAnswer(app_, cases.answer), kCase);
+  const std::vector<CLI::Option*> answer = addAnswer(app_, cases.answer);
+  tag(answer.front(), kCase);
+  tag(answer.back(), kCase | kInspector);
   tag(addDevice(app_, cases.device), kCase);
   tag(addFilter(app_, options_.filter), kCase | kInspector);
   tag(addValue(

@@ -99,7 +99,7 @@ void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
 void applyNamePart(Case& test_case, const std::string& part, const std::string& name) {
   const AlgorithmTraits& traits = test_case.algorithm.traits;
   const auto isa = kIsas.find(part);
-  const auto answer = kAnswerKinds.find(part);
+  const auto answer = findAnswer(part);
   const std::size_t equals = part.find('=');
   if (isa && traits.vectorised) {
     test_case.isa = *isa;
@@ -112,12 +112,19 @@ void applyNamePart(Case& test_case, const std::string& part, const std::string& 
     test_case.threads = parseThreadCount(part.substr(1));
   } else {
     throw InputError(fmt::format(
-        "'{}': '{}' is not {}{}an answer ({}), KEY=VALUE", name, part,
+        "'{}': '{}' is not {}{}an answer ({}, rays:1000), KEY=VALUE", name, part,
         traits.vectorised ? fmt::format("an instruction set ({}), ", fmt::join(kIsas.names(), ", "))
                           : "",
         traits.parallel ? "a number of threads (t4), " : "",
         fmt::join(kAnswerKinds.names(), ", ")));
   }
+}
+
+/// Whether an algorithm answers these queries, or is named.
+bool answers(const Algorithm& algorithm, const CaseOptions& options) {
+  const std::vector<AnswerKind>& kinds = algorithm.traits.queries;
+  return std::ranges::find(kinds, options.answer.kind) != kinds.end() ||
+         std::ranges::find(options.algorithms, algorithm.id) != options.algorithms.end();
 }
 
 }  // namespace
@@ -199,6 +206,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   }
   if (options.algorithms.empty()) selectors.emplace_back("all");
   for (const Algorithm& algorithm : selectAlgorithms(selectors, known, "--algorithm")) {
+    if (isQuery(options.answer) && !answers(algorithm, options)) continue;
     for (const int count : threads) {
       for (const Isa isa : isas) add(algorithm, isa, count);
     }
@@ -217,7 +225,7 @@ static std::size_t pluginPrefixLength(const std::string& name) {
   return 0;
 }
 
-Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer,
+Case caseNamed(const std::string& name, const std::string& device, Answer answer,
                const VariantDefaults& defaults) {
   const std::size_t begin = pluginPrefixLength(name);
   std::vector<std::string> plugins;

@@ -21,7 +21,7 @@ struct CaseOptions {
   std::vector<int> threads;             ///< empty: allCores()
   std::vector<Isa> isas;                ///< empty: the widest supported
   std::string device;                   ///< compute device; "": the first
-  AnswerKind answer = AnswerKind::pairs;
+  Answer answer = {};
 };
 
 /// Returns the algorithms that match a selector (ids, families, globs, "all"), without duplicates,
@@ -48,8 +48,8 @@ struct VariantDefaults {
 /// Parses a case name as written by caseName(): "kd-mt/avx2/t4/events/margin=0.1". An algorithm of
 /// a plug-in is prefixed with its library's file or SDK name: "libmine.so:my-sweep",
 /// "jolt:jolt-quadtree". Omitted parts default to `defaults` and to `answer`. Throws InputError.
-Case caseNamed(const std::string& name, const std::string& device,
-               AnswerKind answer = AnswerKind::pairs, const VariantDefaults& defaults = {});
+Case caseNamed(const std::string& name, const std::string& device, Answer answer = {},
+               const VariantDefaults& defaults = {});
 
 /// Returns the algorithm with this id, or null.
 const Algorithm* findAlgorithm(std::string_view id, const std::vector<Algorithm>& known);

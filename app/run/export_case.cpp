@@ -56,7 +56,7 @@ std::string reproducingCommand(const Case& test_case, const fs::path& recording)
   if (algorithm.traits.parallel) add("--threads", fmt::format("{}", test_case.threads));
   if (!test_case.device.empty()) add("--device", shellQuoted(test_case.device));
   if (test_case.answer != AnswerKind::pairs) {
-    add("--answer", std::string(kAnswerKinds.nameOf(test_case.answer)));
+    add(isQuery(test_case.answer) ? "--queries" : "--answer", answerName(test_case.answer));
   }
   for (const auto& [key, value] : test_case.parameters)
     add("--param", shellQuoted(fmt::format("{}={}", key, value)));
@@ -80,7 +80,7 @@ int runExportCase(Plan plan, const fs::path& file, bool quiet) {
                                  plan.request.case_id, statusName(entry.known->status)));
   }
   requireExportable(file, entry.source.reference.path, entry.source.reference.scene);
-  const InterruptGuard guard;
+  const InterruptGuard interrupts;
   const auto recording = openForCommand(entry.source, quiet);
 
   const Case& test_case = entry.cases.front();

@@ -140,7 +140,9 @@ std::string formatTable(std::span<const CaseResult> results) {
   for (const auto& [name, value] : recording.reading) {
     text += fmt::format(", {}={}", name, value);
   }
-  if (results.front().answer == AnswerKind::events) text += ", events";
+  if (const Answer answer = results.front().answer; answer != AnswerKind::pairs) {
+    text += ", " + answerName(answer);
+  }
   text += '\n';
   std::vector<const CaseColumn*> columns = caseColumns(&ColumnDisplay::terminal);
   const auto is_varied = [&](const CaseResult& result) {

@@ -26,6 +26,12 @@ void PairBroadPhase::searchOverlaps() {
   for (const PairBuffer& buffer : buffers_) runs_.push_back(buffer.run());
 }
 
+void PairBroadPhase::searchQueries(const QueryBatch& batch) {
+  findHits(batch);
+  runs_.clear();
+  for (const PairBuffer& buffer : buffers_) runs_.push_back(buffer.run());
+}
+
 void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first,
                                ExecutionContext& execution) {
   PairBroadPhase::initialize(scene, first, execution);

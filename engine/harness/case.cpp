@@ -19,7 +19,7 @@ std::string parameterParts(const ParameterValues& parameters) {
 }  // namespace
 
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
-              ParameterValues parameters, AnswerKind answer) {
+              ParameterValues parameters, Answer answer) {
   return {.algorithm = algorithm,
           .isa = algorithm.traits.vectorised ? isa : Isa::scalar,
           .threads = algorithm.traits.parallel ? threads : 1,
@@ -34,7 +34,7 @@ std::string caseName(const Case& test_case) {
   if (traits.vectorised) name += fmt::format("/{}", isaName(test_case.isa));
   if (traits.parallel) name += fmt::format("/t{}", test_case.threads);
   if (test_case.answer != AnswerKind::pairs) {
-    name += fmt::format("/{}", kAnswerKinds.nameOf(test_case.answer));
+    name += fmt::format("/{}", answerName(test_case.answer));
   }
   return name + parameterParts(test_case.parameters);
 }

@@ -20,8 +20,8 @@ std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-/// Runs and times the four phases. Nothing else is timed.
-FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
+/// Runs and times the four phases. Nothing else is timed. Null: no queries, but pairs.
+FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame, const QueryBatch* queries) {
   FrameTimes times;
   const auto start = Clock::now();
   algorithm.updateObjects(frame);
@@ -30,7 +30,7 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
   const auto cleaned = Clock::now();
   algorithm.updateStructures();
   const auto structured = Clock::now();
-  algorithm.searchOverlaps();
+  queries == nullptr ? algorithm.searchOverlaps() : algorithm.searchQueries(*queries);
   const auto end = Clock::now();
   times[Phase::update_objects] = nanoseconds(updated - start);
   times[Phase::clean_cache] = nanoseconds(cleaned - updated);
@@ -41,6 +41,16 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
   times[Phase::download] = transfers.download_ns;
   times[Phase::total] = nanoseconds(end - start);
   return times;
+}
+
+void requireQueries(const Case& test_case, const SceneInfo& scene) {
+  const std::vector<AnswerKind>& kinds = test_case.algorithm.traits.queries;
+  if (std::ranges::find(kinds, test_case.answer.kind) == kinds.end()) {
+    throw UnsupportedError(fmt::format("does not answer queries of the kind {}",
+                                       kQueryKinds.nameOf(test_case.answer.kind)));
+  }
+  if (scene.periodic.repeats()) throw UnsupportedError("queries in periodic worlds");
+  if (worldCount(scene) > 1) throw UnsupportedError("queries in several worlds");
 }
 
 void requireRunnable(const Case& test_case, const SceneInfo& scene) {
@@ -54,6 +64,7 @@ void requireRunnable(const Case& test_case, const SceneInfo& scene) {
     throw UnsupportedError(
         fmt::format("at most {} bodies, the scene has {}", traits.max_objects, scene.objects));
   }
+  if (isQuery(test_case.answer)) return requireQueries(test_case, scene);
   if (isChangingWorld(scene) && traits.changing_worlds == ChangingWorlds::unknown) {
     throw UnsupportedError(scene.all_present && !scene.periodic.repeats()
                                ? "does not support collision filters"
@@ -121,6 +132,11 @@ std::int64_t InProcessExecutor::start(const SceneInfo& scene, const Frame& first
 }
 
 std::unique_ptr<BroadPhase> InProcessExecutor::makeInstanceFor(const SceneInfo& scene) const {
+  if (isQuery(case_.answer)) {
+    std::unique_ptr<BroadPhase> instance = makeInstance(case_);
+    instance->answerQueries(case_.answer.kind);
+    return instance;
+  }
   const AlgorithmTraits& traits = case_.algorithm.traits;
   const auto make = [this](const SceneInfo& world) { return makeWorldInstance(case_, world); };
   std::unique_ptr<BroadPhase> instance = hasInstancePerWorld(case_, scene)
@@ -156,8 +172,11 @@ void InProcessExecutor::pinThreads() {
 }
 
 FrameTimes InProcessExecutor::runCounted(const Frame& frame) {
+  const bool has_queries = isQuery(case_.answer);
+  if (has_queries) queries_ = makeQueries(case_.answer, frame.boxes, frame.index);
+  const QueryBatch batch{case_.answer.kind, queries_};
   const ProcessorCounters::Counting counting(*processor_);
-  return runPhases(*instance_, frame);
+  return runPhases(*instance_, frame, has_queries ? &batch : nullptr);
 }
 
 StepResult InProcessExecutor::step(const Frame& frame) {

@@ -120,6 +120,7 @@ void CaseRun::accumulateEvents(const Frame& frame) {
 
 std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle) {
   if (!checks()) return std::nullopt;
+  if (isQuery(case_.answer)) return checkHits(frame, oracle);
   const CollisionFilter& filter = frame.filterIn(scene_);
   if (policy_.check == CheckMode::hash && margin_ == 0 && accumulated_.impossible().empty()) {
     PairDigest found;
@@ -139,6 +140,14 @@ std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle
   if (difference.isMismatch()) {
     fail(Status::mismatch, atFrame(mismatchText(difference)));
   }
+  return difference;
+}
+
+std::optional<FrameDifference> CaseRun::checkHits(const Frame& frame, Oracle& oracle) {
+  PairRuns answer;
+  if (!attempt([&] { answer = executor_->answer(); })) return std::nullopt;
+  FrameDifference difference = findDifference(answer, oracle.hits(case_.answer, frame), frame);
+  if (difference.isMismatch()) fail(Status::mismatch, atFrame(mismatchText(difference)));
   return difference;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "broadmark/error.h"
@@ -41,14 +42,14 @@ HashValue keyOf(std::span<const Aabb> boxes, const CollisionFilter& filter,
 
 }  // namespace
 
-Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
-                             const PeriodicBox& periodic, bool with_pairs) {
+Oracle::PairAnswer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                                 const PeriodicBox& periodic, bool with_pairs) {
   const HashValue key = keyOf(boxes, filter, periodic);
   const auto cached = answers_.find(key);
   if (cached != answers_.end() && (cached->second.pairs || !with_pairs)) return cached->second;
   scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter, periodic)
                                               : sweptPairs(boxes, filter, periodic, max_pairs_);
-  Answer& answer = answers_[key];
+  PairAnswer& answer = answers_[key];
   const PairRun pairs = scratch_;
   answer.digest = digest({&pairs, 1});
   const std::size_t bytes = scratch_.size() * sizeof(Pair);
@@ -61,13 +62,27 @@ Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter&
 
 std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
                                     const PeriodicBox& periodic) {
-  const Answer& answer = find(boxes, filter, periodic, true);
+  const PairAnswer& answer = find(boxes, filter, periodic, true);
   return answer.pairs ? *answer.pairs : scratch_;
 }
 
 PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter,
                               const PeriodicBox& periodic) {
   return find(boxes, filter, periodic, false).digest;
+}
+
+const HitBounds& Oracle::hits(Answer answer, const Frame& frame) {
+  const std::pair key(keyOf(frame.boxes, {}, {}),
+                      fmt::format("{}:{}", frame.index, answerName(answer)));
+  const auto cached = hits_.find(key);
+  if (cached != hits_.end()) return cached->second;
+  const std::vector<Query> queries = makeQueries(answer, frame.boxes, frame.index);
+  hit_scratch_ = findHits({answer.kind, queries}, frame.boxes);
+  const std::size_t bytes =
+      (hit_scratch_.certain.size() + hit_scratch_.possible.size()) * sizeof(Pair);
+  if (bytes > budget_bytes_) return hit_scratch_;
+  budget_bytes_ -= bytes;
+  return hits_.emplace(key, std::move(hit_scratch_)).first->second;
 }
 
 void FrameDifference::addInvalid(PairRun pairs) {
@@ -77,6 +92,27 @@ void FrameDifference::addInvalid(PairRun pairs) {
 std::string mismatchText(const FrameDifference& difference) {
   return fmt::format("{} missed, {} false, {} invalid", difference.missed_count,
                      difference.false_count, difference.invalid_count);
+}
+
+FrameDifference findDifference(PairRuns answer, const HitBounds& hits, const Frame& frame) {
+  FrameDifference difference{.frame = frame.index};
+  std::vector<Pair> reported;
+  for (const PairRun chunk : answer) reported.insert(reported.end(), chunk.begin(), chunk.end());
+  std::ranges::sort(reported);
+  for (std::size_t i = 1; i < reported.size(); ++i) {
+    if (reported[i] != reported[i - 1]) continue;
+    recordPair(difference.invalid_count, difference.invalid_pairs, reported[i]);
+  }
+  reported.erase(std::unique(reported.begin(), reported.end()), reported.end());
+  std::vector<Pair> wrong;
+  std::vector<Pair> missed;
+  std::ranges::set_difference(reported, hits.possible, std::back_inserter(wrong));
+  std::ranges::set_difference(hits.certain, reported, std::back_inserter(missed));
+  for (const Pair hit : wrong) recordPair(difference.false_count, difference.false_pairs, hit);
+  for (const Pair hit : missed) recordPair(difference.missed_count, difference.missed_pairs, hit);
+  const std::uint64_t found = reported.size() - wrong.size() + missed.size();
+  if (found < hits.min_count) difference.missed_count += hits.min_count - found;
+  return difference;
 }
 
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, const Frame& frame,

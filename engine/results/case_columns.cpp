@@ -18,12 +18,23 @@ using S = const Summary&;
 
 constexpr const auto& namesOf(Isa) { return kIsas; }
 constexpr const auto& namesOf(Status) { return kStatuses; }
-constexpr const auto& namesOf(AnswerKind) { return kAnswerKinds; }
 constexpr const auto& namesOf(CheckMode) { return kCheckModes; }
+
+/// The names of answers, by the functions of a NameTable.
+struct AnswerNames {
+  static std::string nameOf(Answer answer) { return answerName(answer); }
+  static std::optional<Answer> find(std::string_view name) { return findAnswer(name); }
+};
+constexpr AnswerNames namesOf(Answer) { return {}; }
+
+template <class T>
+concept Named = requires(T value) {
+  namesOf(value);
+};
 
 template <class T>
 ColumnValue valueOf(const T& value) {
-  if constexpr (std::is_enum_v<T>) {
+  if constexpr (Named<T>) {
     return std::string(namesOf(value).nameOf(value));
   } else if constexpr (std::is_integral_v<T>) {
     return static_cast<std::uint64_t>(value);
@@ -93,7 +104,7 @@ CaseColumn stored(const std::string& key, std::string_view title, JsonField json
   CaseColumn column = computed(key, title, std::move(json), get, std::move(shown));
   column.read = [get](const JsonFields& fields, const char* field, CaseResult& result) {
     auto& value = std::invoke(get, result);
-    if constexpr (std::is_enum_v<std::remove_reference_t<decltype(value)>>) {
+    if constexpr (Named<std::remove_reference_t<decltype(value)>>) {
       value = fields.named(field, namesOf(value));
     } else {
       fields.read(field, value);

@@ -40,8 +40,8 @@ std::vector<ChangingWorld> movingClusters() {
 }
 
 /// The pairs, or the begun and the ended pairs.
-std::vector<std::vector<Pair>> answerOf(CaseExecutor& host, AnswerKind kind) {
-  if (kind == AnswerKind::pairs) return {sorted(host.answer())};
+std::vector<std::vector<Pair>> answerOf(CaseExecutor& host, Answer answer) {
+  if (answer == AnswerKind::pairs) return {sorted(host.answer())};
   const PairEvents events = host.events();
   return {sorted(events.began), sorted(events.ended)};
 }

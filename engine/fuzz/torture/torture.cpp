@@ -69,7 +69,11 @@ Case randomCase(Random& random, const std::vector<Algorithm>& algorithms) {
   const Algorithm& algorithm = randomAlgorithm(random, algorithms);
   const Isa isa = random.anyOf(supportedIsas());
   const int threads = random.anyOf(kThreads);
-  const AnswerKind answer = random.anyOf(kAnswerKinds.entries).value;
+  Answer answer = random.anyOf(kAnswerKinds.entries).value;
+  const std::vector<AnswerKind>& queries = algorithm.traits.queries;
+  if (!queries.empty() && random.onceIn(4)) {
+    answer = {random.anyOf(queries), static_cast<std::uint32_t>(random.integer(1, 40))};
+  }
   return makeCase(algorithm, isa, threads, "", randomParameters(random, algorithm), answer);
 }
 
@@ -145,7 +149,7 @@ class Round {
   void count(const RandomWorld& world, TortureCoverage& coverage) const {
     const SceneInfo& scene = world.frames->scene();
     coverage[{case_.algorithm.id, std::string(isaName(case_.isa)), case_.threads,
-              std::string(kAnswerKinds.nameOf(case_.answer)), world.name}] +=
+              isQuery(case_.answer) ? "queries" : answerName(case_.answer), world.name}] +=
         {.worlds = 1,
          .frames = scene.frames,
          .changing = scene.all_present ? 0 : scene.frames,

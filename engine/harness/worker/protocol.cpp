@@ -115,7 +115,7 @@ Json toJson(const Case& test_case) {
           {"threads", test_case.threads},
           {"device", test_case.device},
           {"parameters", test_case.parameters},
-          {"answer", kAnswerKinds.nameOf(test_case.answer)}};
+          {"answer", answerName(test_case.answer)}};
 }
 
 Case caseFrom(const Json& json, const AlgorithmFinder& find) {
@@ -133,7 +133,7 @@ Case caseFrom(const Json& json, const AlgorithmFinder& find) {
   const auto value = kIsas.find(isa);
   if (!value) throw UnsupportedError("there is no instruction set " + isa);
   test_case.isa = *value;
-  test_case.answer = kAnswerKinds.find(json.at("answer").get<std::string>()).value();
+  test_case.answer = findAnswer(json.at("answer").get<std::string>()).value();
   return test_case;
 }
 

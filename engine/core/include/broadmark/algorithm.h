@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "broadmark/broad_phase.h"
 
@@ -29,6 +30,8 @@ struct AlgorithmTraits {
   bool on_device = false;    ///< runs on a compute device, with a driver that starts threads
   bool incremental = false;  ///< retains pairs or a structure between frames
   bool events = false;       ///< reports begun and ended pairs: BroadPhase::events()
+  /// The kinds of queries it answers: BroadPhase::searchQueries().
+  std::vector<AnswerKind> queries = {};
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
   /// A library called by the algorithm allocates in a steady state, unavoidably.

@@ -13,6 +13,7 @@
 #include "broadmark/frame.h"
 #include "broadmark/pair.h"
 #include "broadmark/parameters.h"
+#include "broadmark/queries.h"
 
 namespace broadmark {
 
@@ -34,6 +35,10 @@ struct TransferTimes {
 /// An algorithm that finds begun and ended pairs itself (traits.events) may get a reportEvents()
 /// call before initialize: then the answer is events(), and overlaps() is not called. For all
 /// others events are derived from the answers of two frames, as part of phase 4.
+///
+/// An algorithm that answers queries (traits.queries) may get an answerQueries() call before
+/// initialize: then phase 4 is searchQueries(). Bodies may be absent, whatever its traits say;
+/// collision filters do not apply.
 class BroadPhase : public Parametrised {
  public:
   /// 0: exact. Otherwise conservative: an extra pair is allowed when the two boxes overlap once
@@ -65,6 +70,13 @@ class BroadPhase : public Parametrised {
   /// the algorithm; valid until the next updateObjects.
   [[nodiscard]] virtual PairEvents events() const { return {}; }
 
+  /// Called before initialize(), only for kinds in traits.queries: searchQueries() replaces
+  /// searchOverlaps().
+  virtual void answerQueries(AnswerKind) {}
+  /// Phase 4: finds the bodies that each query hits. overlaps() then holds each hit once: a, the
+  /// query's index; b, the body.
+  virtual void searchQueries(const QueryBatch&) {}
+
   /// Copy times within the phases of the last frame (algorithms on a compute device).
   [[nodiscard]] virtual TransferTimes transfers() const { return {}; }
 
@@ -90,11 +102,14 @@ class PairBroadPhase : public BroadPhase {
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void cleanCache() final;
   void searchOverlaps() final;
+  void searchQueries(const QueryBatch&) final;
   [[nodiscard]] PairRuns overlaps() const final { return runs_; }
 
  protected:
   /// Adds every pair of the frame to the buffer of any worker.
   virtual void findPairs() = 0;
+  /// Adds every hit of a query, as searchQueries(), to the buffer of any worker.
+  virtual void findHits(const QueryBatch&) {}
 
   ExecutionContext& execution() { return *execution_; }
   ThreadTeam& team() { return execution_->team(); }

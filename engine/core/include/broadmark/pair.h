@@ -77,6 +77,12 @@ class alignas(64) PairBuffer {
     ++size_;
   }
 
+  /// Adds a hit of a query: (query, body).
+  void addHit(std::uint32_t query, std::uint32_t body) {
+    *room(1) = {query, body};
+    ++size_;
+  }
+
   /// Space for `count` more pairs behind the present ones; valid until the next call. Written pairs
   /// count only after advance().
   Pair* room(std::size_t count) {

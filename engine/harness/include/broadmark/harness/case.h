@@ -6,18 +6,12 @@
 #include <string_view>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/answer.h"
 #include "broadmark/execution.h"
 #include "broadmark/frame.h"
-#include "broadmark/names.h"
 #include "broadmark/parameters.h"
 
 namespace broadmark {
-
-/// The kind of answer per frame: all pairs, or only those that began or ended since the frame
-/// before.
-enum class AnswerKind { pairs, events };
-inline constexpr NameTable kAnswerKinds{
-    {NamedValue{AnswerKind::pairs, "pairs"}, {AnswerKind::events, "events"}}};
 
 /// An algorithm with its settings.
 struct Case {
@@ -26,12 +20,12 @@ struct Case {
   int threads = 1;
   std::string device = {};          ///< as ExecutionContext::device()
   ParameterValues parameters = {};  ///< values that differ from the default
-  AnswerKind answer = AnswerKind::pairs;
+  Answer answer = {};
 };
 
 /// A case of `algorithm`, with neutral values for settings that it ignores.
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
-              ParameterValues parameters, AnswerKind answer = AnswerKind::pairs);
+              ParameterValues parameters, Answer answer = {});
 
 /// "bf-simd-mt/avx2/t4/events/key=value": the part of a case's id without the recording.
 std::string caseName(const Case&);

@@ -117,7 +117,8 @@ class InProcessExecutor final : public CaseExecutor {
   std::optional<ProcessorCounters> processor_;
   std::optional<ExecutionContext> execution_;
   std::unique_ptr<BroadPhase> instance_;
-  std::uint32_t bodies_ = 0;  ///< number of bodies in the scene
+  std::uint32_t bodies_ = 0;    ///< number of bodies in the scene
+  std::vector<Query> queries_;  ///< of this frame
   PairRuns answer_;
   PairEvents events_;
 };

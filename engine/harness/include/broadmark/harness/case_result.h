@@ -67,7 +67,7 @@ struct CaseResult {
   std::string device;          ///< as requested, see ExecutionContext::device()
   std::string plugin;          ///< the algorithm's plug-in file; "": built in
   ParameterValues parameters;  ///< all, defaults included
-  AnswerKind answer = AnswerKind::pairs;
+  Answer answer = {};
   Conditions conditions;
   std::size_t environment = 0;  ///< index in Results::environments
 

@@ -122,6 +122,8 @@ class CaseRun {
   [[nodiscard]] bool answersEvents() const { return case_.answer == AnswerKind::events; }
   /// Accumulates the events of this frame, if they are checked.
   void accumulateEvents(const Frame& frame);
+  /// As check(), of an answer to queries.
+  std::optional<FrameDifference> checkHits(const Frame& frame, Oracle& oracle);
   [[nodiscard]] std::string atFrame(std::string_view what) const;
 
   Case case_;

@@ -13,6 +13,7 @@
 #include "broadmark/frame.h"
 #include "broadmark/hasher.h"
 #include "broadmark/pair.h"
+#include "broadmark/queries.h"
 #include "broadmark/reference_pairs.h"
 
 namespace broadmark {
@@ -31,19 +32,24 @@ class Oracle {
   /// The overlapping wanted pairs of these boxes, ascending; valid until the next call.
   std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {},
                               const PeriodicBox& periodic = {});
+  /// The hits of the queries that a case with this answer gets in the frame; valid until the next
+  /// call.
+  const HitBounds& hits(Answer, const Frame&);
   PairDigest pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter = {},
                         const PeriodicBox& periodic = {});
 
  private:
-  struct Answer {
+  struct PairAnswer {
     PairDigest digest;
     std::optional<std::vector<Pair>> pairs;  ///< nullopt if beyond the budget
   };
   /// With `with_pairs`, the pairs are in the answer, or else in scratch_.
-  Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter,
-               const PeriodicBox& periodic, bool with_pairs);
+  PairAnswer& find(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                   const PeriodicBox& periodic, bool with_pairs);
 
-  std::map<HashValue, Answer> answers_;
+  std::map<HashValue, PairAnswer> answers_;
+  std::map<std::pair<HashValue, std::string>, HitBounds> hits_;  ///< by frame and answer
+  HitBounds hit_scratch_;
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
   std::size_t max_pairs_;
@@ -77,6 +83,10 @@ struct FrameDifference {
 
 /// "12 missed, 0 false, 1 invalid"
 std::string mismatchText(const FrameDifference&);
+
+/// Compares an answer to queries with what is certain and possible. If it has too few of the
+/// nearest bodies, it misses that many.
+FrameDifference findDifference(PairRuns answer, const HitBounds& hits, const Frame& frame);
 
 /// Compares an answer with the correct pairs (ascending) of these boxes. `margin` as in
 /// BroadPhase::margin().
