@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -14,11 +13,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "box_reader.h"
 #include "broadmark/adapters.h"
 #include "broadmark/broad_phase.h"
-#include "broadmark/exact_sum.h"
 #include "broadmark/large_array.h"
 #include "columns.h"
+#include "query_tree.h"
 #include "sorted_pairs.h"
 #include "tide.h"
 
@@ -35,110 +35,7 @@ std::span<const Pair> published(PairRun run) {
 }
 
 std::string numbered(const char* what, std::size_t number) {
-  return what + (" " + std::to_string(number));
-}
-
-/// Reads the caller's boxes, which need not be aligned.
-class BoxReader {
- public:
-  BoxReader(const void* min, const void* max, std::size_t stride, float margin)
-      : min_(static_cast<const std::byte*>(min)),
-        max_(static_cast<const std::byte*>(max)),
-        stride_(stride),
-        margin_(margin) {}
-
-  /// As given.
-  [[nodiscard]] Aabb raw(std::size_t body) const {
-    Aabb box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.min[axis] = load<float>(min_, body, axis);
-      box.max[axis] = load<float>(max_, body, axis);
-    }
-    return box;
-  }
-
-  /// Whether the box is stored otherwise.
-  [[nodiscard]] bool differs(std::size_t body, const Aabb& stored) const {
-    if (margin_ != 0) return !sameBits(enlarged(body), stored);
-    return differs(min_, body, stored.min) || differs(max_, body, stored.max);
-  }
-
-  void store(std::size_t body, Aabb& into) const {
-    if (margin_ != 0) {
-      into = enlarged(body);
-      return;
-    }
-    store(min_, body, into.min);
-    store(max_, body, into.max);
-  }
-
- private:
-  using Corner = std::array<float, 4>;
-
-  template <class T>
-  [[nodiscard]] T load(const std::byte* corners, std::size_t body, std::size_t axis) const {
-    T value;
-    std::memcpy(&value, corners + body * stride_ + axis * sizeof(float), sizeof(T));
-    return value;
-  }
-
-  // Two coordinates at once. Both never read what was written in other pieces, for which a
-  // processor would have to wait.
-  [[nodiscard]] bool differs(const std::byte* corners, std::size_t body,
-                             const Corner& stored) const {
-    std::uint64_t xy;
-    std::uint32_t z;
-    std::memcpy(&xy, stored.data(), sizeof(xy));
-    std::memcpy(&z, stored.data() + 2, sizeof(z));
-    return ((xy ^ load<std::uint64_t>(corners, body, 0)) |
-            (z ^ load<std::uint32_t>(corners, body, 2))) != 0;
-  }
-  void store(const std::byte* corners, std::size_t body, Corner& into) const {
-    const auto xy = load<std::uint64_t>(corners, body, 0);
-    const auto z = load<std::uint32_t>(corners, body, 2);
-    std::memcpy(into.data(), &xy, sizeof(xy));
-    std::memcpy(into.data() + 2, &z, sizeof(z));
-  }
-
-  [[nodiscard]] Aabb enlarged(std::size_t body) const {
-    Aabb box = raw(body);
-    constexpr float kMax = std::numeric_limits<float>::max();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      float& min = box.min[axis];
-      float& max = box.max[axis];
-      if (std::isfinite(min)) min = std::max(floatBelow({min, -margin_}), -kMax);
-      if (std::isfinite(max)) max = std::min(floatAbove({max, margin_}), kMax);
-    }
-    return box;
-  }
-
-  const std::byte* min_;
-  const std::byte* max_;
-  std::size_t stride_;
-  float margin_;
-};
-
-bool isValid(const Aabb& box) {
-  bool valid = true;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    // False for NaN, too. Branchless: compiles to vector instructions.
-    valid &= (box.min[axis] <= box.max[axis]) &
-             (box.min[axis] >= std::numeric_limits<float>::lowest()) &
-             (box.max[axis] <= std::numeric_limits<float>::max());
-  }
-  return valid || sameBits(box, broadmark::kEmptyBox);
-}
-
-std::string faultOf(const Aabb& box) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string name(1, "xyz"[axis]);
-    if (std::isnan(box.min[axis]) || std::isnan(box.max[axis])) return name + " is NaN";
-    if (box.min[axis] <= box.max[axis] &&
-        (std::isinf(box.min[axis]) || std::isinf(box.max[axis]))) {
-      return name + " is infinite; the largest float is allowed";
-    }
-  }
-  return "min > max; absent bodies have kNoBox";
+  return std::string(what).append(" ").append(std::to_string(number));
 }
 
 Isa isaOf(InstructionSet set) {
@@ -301,6 +198,8 @@ class BroadPhase::Implementation {
   std::span<const Pair> pairs() const { return answer(Answer::pairs, pairs_run_); }
   std::span<const Pair> began() const { return answer(Answer::events, began_run_); }
   std::span<const Pair> ended() const { return answer(Answer::events, ended_run_); }
+  template <class Query, class T, class Answer>
+  void query(std::span<const Query> queries, QueryResults<T>& results, Answer answer);
   std::size_t size() const { return size_; }
   void save(std::vector<std::byte>& state) const;
   void restore(std::span<const std::byte> state);
@@ -354,6 +253,7 @@ class BroadPhase::Implementation {
   std::unique_ptr<ExecutionContext> execution_;
   std::unique_ptr<broadmark::BroadPhase> instance_;  ///< null: to be created
   std::uint32_t frame_ = 0;
+  std::unique_ptr<QueryTree> queries_;  ///< null before the first query
 
   PairArray pairs_;
   PairArray began_;
@@ -429,7 +329,10 @@ void BroadPhase::Implementation::checkChanged(const BoxReader& boxes, std::size_
   if (valid) return;
   for (const Body body : changed_) {
     const Aabb box = boxes.raw(body);
-    if (!isValid(box)) throw std::invalid_argument(numbered("body", body) + ": " + faultOf(box));
+    if (isValid(box)) continue;
+    const std::string fault = faultOf(box);
+    throw std::invalid_argument(numbered("body", body) + ": " + fault +
+                                (fault == "min > max" ? "; absent bodies have kNoBox" : ""));
   }
 }
 
@@ -533,6 +436,7 @@ PairArray BroadPhase::Implementation::initialPairs() {
 }
 
 void BroadPhase::Implementation::storeChanged(const BoxReader& boxes, std::size_t count) {
+  if (queries_ != nullptr) queries_->markDirty(changed_);
   for (const Body body : changed_) {
     if (body < count) {
       boxes.store(body, boxes_[body]);
@@ -559,6 +463,7 @@ void BroadPhase::Implementation::resizeSlots(std::size_t count) {
     groups[body].tags = filters_[body].tags;
   }
   filter_ = CollisionFilter(groups, matrix_);
+  if (queries_ != nullptr) queries_->markAllDirty();
 }
 
 void BroadPhase::Implementation::createExecution() {
@@ -654,6 +559,59 @@ void BroadPhase::Implementation::setFilter(Body body, const Filter& filter) {
   if (body >= filters_.size()) filters_.resize(body + std::size_t{1});
   filters_[body] = filter;
   filters_changed_ = true;
+}
+
+// Queries.
+
+namespace {
+
+[[noreturn]] void refuse(std::size_t query, const std::string& fault) {
+  throw std::invalid_argument(numbered("query", query) + ": " + fault);
+}
+
+void check(std::size_t number, const Box& box) {
+  const Aabb checked = BoxReader(box.min, box.max, 0, 0).raw(0);
+  if (!isFiniteBox(checked)) refuse(number, faultOf(checked));
+}
+
+void check(std::size_t number, const float (&vector)[3], const char* name) {
+  for (const float x : vector) {
+    if (!std::isfinite(x)) refuse(number, std::string(name) + " is not finite");
+  }
+}
+
+void check(std::size_t number, float limit, const char* name) {
+  if (!(limit >= 0)) refuse(number, std::string(name) + " is negative or NaN");
+}
+
+void check(std::size_t number, const BoxQuery& query) { check(number, query.box); }
+void check(std::size_t number, const Cast& cast) {
+  check(number, cast.box);
+  check(number, cast.direction, "direction");
+  check(number, cast.max_fraction, "max_fraction");
+}
+void check(std::size_t number, const NearestQuery& query) {
+  check(number, query.point, "point");
+  check(number, query.max_distance, "max_distance");
+}
+
+}  // namespace
+
+/// By the function of QueryTree, which is given the queries, `results` and threads.
+template <class Query, class T, class Answer>
+void BroadPhase::Implementation::query(std::span<const Query> queries, QueryResults<T>& results,
+                                       Answer answer) {
+  const Use use(in_use_);
+  if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
+  for (std::size_t i = 0; i < queries.size(); ++i) check(i, queries[i]);
+  if (boxes_.empty() || execution_ == nullptr) {  // no body is present
+    results.items.clear();
+    results.starts.assign(queries.size() + 1, 0);
+    return;
+  }
+  if (queries_ == nullptr) queries_ = std::make_unique<QueryTree>(isa_);
+  queries_->refresh({boxes_, filter_}, execution_->team());
+  answer(*queries_, execution_->team());
 }
 
 // States. Boxes are saved as stored, with their margin, so that they are restored exactly.
@@ -783,6 +741,23 @@ void BroadPhase::setFilter(std::uint32_t body, const Filter& filter) {
 std::span<const Pair> BroadPhase::pairs() const { return implementation().pairs(); }
 std::span<const Pair> BroadPhase::began() const { return implementation().began(); }
 std::span<const Pair> BroadPhase::ended() const { return implementation().ended(); }
+void BroadPhase::overlapping(std::span<const BoxQuery> queries,
+                             QueryResults<std::uint32_t>& results) {
+  implementation().query(queries, results, [&](QueryTree& tree, ThreadTeam& team) {
+    tree.overlapping(queries, results, team);
+  });
+}
+void BroadPhase::cast(std::span<const Cast> casts, Hits hits, QueryResults<CastHit>& results) {
+  checkChoice(hits, Hits::all, "hits");
+  implementation().query(casts, results, [&](QueryTree& tree, ThreadTeam& team) {
+    tree.cast(casts, hits, results, team);
+  });
+}
+void BroadPhase::nearest(std::span<const NearestQuery> queries, QueryResults<Neighbour>& results) {
+  implementation().query(queries, results, [&](QueryTree& tree, ThreadTeam& team) {
+    tree.nearest(queries, results, team);
+  });
+}
 std::size_t BroadPhase::size() const { return implementation().size(); }
 void BroadPhase::save(std::vector<std::byte>& state) const { implementation().save(state); }
 void BroadPhase::restore(std::span<const std::byte> state) { implementation().restore(state); }

@@ -14,12 +14,6 @@ namespace {
 using inputs::Input;
 using inputs::Random;
 
-std::vector<Input> allInputs() {
-  std::vector<Input> all(inputs::kAll.begin(), inputs::kAll.end());
-  all.push_back({"limits", inputs::limits});
-  return all;
-}
-
 TEST(BroadphaseLibrary, IsRightOnEveryTortureInput) {
   for (const Input& input : allInputs()) {
     for (const std::size_t n : {std::size_t{1}, std::size_t{37}, std::size_t{600}}) {

@@ -17,22 +17,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The message of the exception that a call must throw.
-template <class Error, class Call>
-std::string messageOf(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no exception";
-}
-
-template <class Call>
-std::string invalidArgument(Call call) {
-  return messageOf<std::invalid_argument>(call);
-}
-
 class BroadphaseMisuse : public testing::Test {
  protected:
   BroadphaseMisuse() { object_.update(boxes_); }

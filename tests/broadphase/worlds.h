@@ -20,6 +20,12 @@ namespace bp = broadphase;
 using BoxList = std::vector<Aabb>;
 using PairList = std::vector<Pair>;
 
+inline std::vector<inputs::Input> allInputs() {
+  std::vector<inputs::Input> all(inputs::kAll.begin(), inputs::kAll.end());
+  all.push_back({"limits", inputs::limits});
+  return all;
+}
+
 inline std::vector<bp::Box> publicBoxes(const BoxList& boxes) {
   std::vector<bp::Box> result;
   for (const Aabb& box : boxes) {
@@ -91,6 +97,22 @@ inline std::string describe(const bp::Options& options) {
          (options.order == bp::Order::sorted ? " sorted" : "") + " isa " +
          std::to_string(static_cast<int>(options.instruction_set)) + " threads " +
          std::to_string(options.threads) + (options.parallel_for ? " jobs" : "");
+}
+
+/// The message of the exception that a call must throw.
+template <class Error, class Call>
+std::string messageOf(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no exception";
+}
+
+template <class Call>
+std::string invalidArgument(Call call) {
+  return messageOf<std::invalid_argument>(call);
 }
 
 /// Updates a broad phase, and knows what is right.

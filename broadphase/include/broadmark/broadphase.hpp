@@ -128,6 +128,68 @@ struct Options {
   }
 };
 
+/// What queries find: bodies of these layers, bit b for layer b.
+inline constexpr std::uint32_t kAllLayers = 0xFFFF'FFFF;
+
+/// Asks for the bodies whose boxes overlap a box.
+struct BoxQuery {
+  Box box;
+  std::uint32_t layers = kAllLayers;
+};
+
+/// Asks for the bodies whose boxes are hit by a box that moves along `direction`, up to
+/// `max_fraction` times as far; infinity: no limit. A ray is the cast of a point: min = max.
+struct Cast {
+  Box box;
+  float direction[3];
+  float max_fraction = 1;
+  std::uint32_t layers = kAllLayers;
+};
+
+/// The cast's box and the body's begin to overlap when the former has moved by `fraction` times its
+/// direction; 0 if they do at the start.
+struct CastHit {
+  double fraction;
+  std::uint32_t body;
+
+  friend bool operator==(const CastHit&, const CastHit&) = default;
+  friend auto operator<=>(const CastHit&, const CastHit&) = default;
+};
+
+/// Which hits of a cast are reported.
+enum class Hits {
+  closest,  ///< the first one; of several at the same fraction, that of the lowest body
+  all       ///< ascending by fraction, then body
+};
+
+/// Asks for the `count` bodies whose boxes are nearest to a point, up to `max_distance` away;
+/// infinity: no limit.
+struct NearestQuery {
+  float point[3];
+  std::uint32_t count = 1;
+  float max_distance = std::numeric_limits<float>::infinity();
+  std::uint32_t layers = kAllLayers;
+};
+
+struct Neighbour {
+  double distance;  ///< from the point to the body's box; 0 inside of it
+  std::uint32_t body;
+
+  friend bool operator==(const Neighbour&, const Neighbour&) = default;
+};
+
+/// The answers to a batch of queries. Keeps its memory if it is used again.
+template <class T>
+struct QueryResults {
+  std::vector<std::size_t> starts;  ///< of each query's answer in `items`, and their end
+  std::vector<T> items;
+
+  [[nodiscard]] std::size_t size() const { return starts.empty() ? 0 : starts.size() - 1; }
+  [[nodiscard]] std::span<const T> operator[](std::size_t query) const {
+    return std::span(items).subspan(starts[query], starts[query + 1] - starts[query]);
+  }
+};
+
 /// Finds the pairs of a world of bodies. A body's id is the index of its box; ids of absent bodies
 /// may be reused.
 ///
@@ -136,7 +198,7 @@ struct Options {
 /// exception from the job system), only restore() and destruction are allowed afterwards.
 ///
 /// One thread at a time: a call during another one throws std::logic_error. In a steady state
-/// update() and save() allocate nothing.
+/// update(), save() and queries allocate nothing.
 class BroadPhase {
  public:
   static constexpr std::size_t kMaxBodies = (std::size_t{1} << 29) - 1;
@@ -163,6 +225,19 @@ class BroadPhase {
   [[nodiscard]] std::span<const Pair> pairs() const;
   [[nodiscard]] std::span<const Pair> began() const;
   [[nodiscard]] std::span<const Pair> ended() const;
+
+  /// Queries about the boxes and layers of the last update or restore(), with the margin. Each call
+  /// answers a batch, in parallel if there are threads. The answers depend on these boxes alone.
+  /// The first query builds a tree, which later ones refit to what has changed; updates cost
+  /// nothing more without queries. Throws std::invalid_argument for NaN, min > max, negative
+  /// limits, and infinite numbers other than limits. If a query fails, only `results` changes.
+
+  /// Ascending by body.
+  void overlapping(std::span<const BoxQuery> queries, QueryResults<std::uint32_t>& results);
+  /// No hit is missed, and what misses within rounding, by a 2^-49th of the fraction, is a hit.
+  void cast(std::span<const Cast> casts, Hits hits, QueryResults<CastHit>& results);
+  /// Ascending by squared distance, as computed in doubles, then body.
+  void nearest(std::span<const NearestQuery> queries, QueryResults<Neighbour>& results);
 
   /// The number of boxes in the last update.
   [[nodiscard]] std::size_t size() const;

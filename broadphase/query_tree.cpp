@@ -1,0 +1,717 @@
+// A bounding volume hierarchy with eight children to a node, over the boxes of the last update.
+//
+//   update         markDirty: changed bodies, up to a limit; beyond it, all
+//   first query    build: split by the surface area heuristic, until eight bodies fit in a node
+//   later queries  refresh: refit the dirty bodies' slots and the nodes above them; reinsert bodies
+//                  that left their node's bounds; build if too many nodes have grown
+//   batch          each worker answers a share; shares are concatenated
+//
+//   QueryNode, 256 bytes: eight slots                     slot_of_[body], parent_slots_[node]
+//   +------------------------------------------+
+//   | min x  0 1 2 3 4 5 6 7 | ... | max z 0-7 |   one vector comparison per bound tests all slots
+//   | layers 0 1 2 3 4 5 6 7 | children 0-7    |   below a slot: a body, a node or nothing
+//   +------------------------------------------+
+//
+// Answers are exact, whatever the shape of the tree: a slot of a body has its box, and the test of
+// a slot is monotone in its bounds (query_math.h). They are sorted, so they do not depend on the
+// shape.
+//
+// O(log n + k) for a query if boxes overlap little; O(n log n) to build, O(m log n) to refit m
+// dirty bodies.
+//
+// Papers: I. Wald, C. Benthin, S. Boulos, "Getting Rid of Packets", 2008 (wide nodes); I. Wald, "On
+// fast Construction of SAH-based Bounding Volume Hierarchies", 2007 (bins).
+
+#include "query_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "corner.h"
+
+namespace broadmark::broadphase {
+namespace {
+
+constexpr std::uint32_t kWidth = QueryNode::kWidth;
+
+Corner minCorner(const Aabb& box) { return cornerOf(box.min); }
+Corner maxCorner(const Aabb& box) { return cornerOf(box.max); }
+
+/// The bounds of some boxes.
+struct Bounds {
+  Corner min = Corner{} + QueryNode::kMax;
+  Corner max = Corner{} - QueryNode::kMax;
+
+  void add(Corner other_min, Corner other_max) {
+    min = smaller(min, other_min);
+    max = larger(max, other_max);
+  }
+  void add(const Bounds& other) { add(other.min, other.max); }
+};
+
+/// Half the surface.
+double areaOf(const Bounds& bounds) {
+  std::array<double, 3> edges;
+  for (int axis = 0; axis < 3; ++axis) {
+    edges[axis] = static_cast<double>(bounds.max[axis]) - static_cast<double>(bounds.min[axis]);
+  }
+  return edges[0] * edges[1] + edges[1] * edges[2] + edges[2] * edges[0];
+}
+
+/// Twice the centre may overflow.
+Corner centreOf(const Aabb& box) { return minCorner(box) * 0.5F + maxCorner(box) * 0.5F; }
+
+/// A range of items.
+struct Part {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  Bounds bounds;
+
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+};
+
+constexpr QueryNode kEmptyNode = [] {
+  QueryNode node{};
+  for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+    for (int axis = 0; axis < 3; ++axis) {
+      node.bounds[axis][slot] = QueryNode::kMax;
+      node.bounds[axis + 3][slot] = -QueryNode::kMax;
+    }
+    node.children[slot] = QueryNode::kUnused;
+  }
+  return node;
+}();
+
+bool isBody(std::uint32_t child) {
+  return (child & QueryNode::kBody) != 0 && child != QueryNode::kUnused;
+}
+bool isNode(std::uint32_t child) { return (child & QueryNode::kBody) == 0; }
+
+/// An eighth of the sum of a box's edges: unlike a surface, not 0 for flat ones, and never
+/// infinite. 0 for reversed bounds.
+float sizeOf(const float (&bounds)[6]) {
+  float size = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    size += std::max(bounds[axis + 3] * 0.125F - bounds[axis] * 0.125F, 0.0F);
+  }
+  return size;
+}
+
+/// Splits items into two, of which neither is empty.
+class Splitter {
+ public:
+  /// By the surface area heuristic, or in halves.
+  static std::array<Part, 2> split(std::span<QueryItem> items, const Part& part, bool by_area) {
+    const std::span<QueryItem> range = items.subspan(part.begin, part.size());
+    Bounds centres;
+    for (const QueryItem& item : range) {
+      const Corner centre = centreOf(item.box);
+      centres.add(centre, centre);
+    }
+    int axis = 0;
+    double extent = -1;
+    for (int i = 0; i < 3; ++i) {
+      const double other = double{centres.max[i]} - double{centres.min[i]};
+      if (other > extent) extent = other, axis = i;
+    }
+    const double origin = centres.min[axis];
+    std::size_t middle = range.size() / 2;
+    if (by_area && extent > 0) {
+      const double scale = kBins * (1 - 1e-9) / extent;
+      const auto bin_of = [&](const QueryItem& item) {
+        return static_cast<std::size_t>((double{centreOf(item.box)[axis]} - origin) * scale);
+      };
+      Bin bins[kBins];
+      for (const QueryItem& item : range) {
+        Bin& bin = bins[bin_of(item)];
+        bin.bounds.add(minCorner(item.box), maxCorner(item.box));
+        ++bin.count;
+      }
+      const std::size_t first_above = bestSplit(bins, range.size());
+      const auto above = std::partition(range.begin(), range.end(), [&](const QueryItem& item) {
+        return bin_of(item) < first_above;
+      });
+      middle = static_cast<std::size_t>(above - range.begin());
+    } else {
+      std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(middle),
+                       range.end(), [&](const QueryItem& a, const QueryItem& b) {
+                         return centreOf(a.box)[axis] < centreOf(b.box)[axis];
+                       });
+    }
+    std::array<Part, 2> parts = {Part{part.begin, part.begin + middle, {}},
+                                 Part{part.begin + middle, part.end, {}}};
+    for (Part& half : parts) {
+      for (const QueryItem& item : items.subspan(half.begin, half.size())) {
+        half.bounds.add(minCorner(item.box), maxCorner(item.box));
+      }
+    }
+    return parts;
+  }
+
+ private:
+  static constexpr std::size_t kBins = 16;
+
+  struct Bin {
+    Bounds bounds;
+    std::size_t count = 0;
+  };
+
+  /// The first bin above the split; the first and the last bin are not empty.
+  static std::size_t bestSplit(const Bin (&bins)[kBins], std::size_t count) {
+    double costs_above[kBins];
+    Bounds bounds;
+    std::size_t above = 0;
+    for (std::size_t bin = kBins; bin-- > 1;) {
+      bounds.add(bins[bin].bounds);
+      above += bins[bin].count;
+      costs_above[bin] = areaOf(bounds) * static_cast<double>(above);
+    }
+    bounds = {};
+    std::size_t best = 0;
+    std::size_t best_imbalance = 0;
+    double best_cost = 0;
+    std::size_t below = 0;
+    for (std::size_t bin = 1; bin < kBins; ++bin) {
+      bounds.add(bins[bin - 1].bounds);
+      below += bins[bin - 1].count;
+      const double cost = areaOf(bounds) * static_cast<double>(below) + costs_above[bin];
+      const std::size_t imbalance = std::max(below, count - below);  // all areas may be 0
+      if (best == 0 || cost < best_cost || (cost == best_cost && imbalance < best_imbalance)) {
+        best = bin;
+        best_cost = cost;
+        best_imbalance = imbalance;
+      }
+    }
+    return best;
+  }
+};
+
+/// Divides a part into up to eight, until they fit in nodes.
+std::size_t divide(std::span<QueryItem> items, bool by_area, std::array<Part, kWidth>& parts) {
+  parts[0] = {0, items.size(), {}};
+  std::size_t count = 1;
+  while (count < kWidth) {
+    std::size_t largest = count;
+    double largest_area = -1;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double area = by_area ? areaOf(parts[i].bounds) : static_cast<double>(parts[i].size());
+      if (parts[i].size() <= kWidth || (count > 1 && area <= largest_area)) continue;
+      largest = i;
+      largest_area = area;
+    }
+    if (largest == count) break;
+    const auto halves = Splitter::split(items, parts[largest], by_area);
+    parts[largest] = halves[0];
+    parts[count++] = halves[1];
+  }
+  return count;
+}
+
+}  // namespace
+
+// Dirty bodies.
+
+void QueryTree::markDirty(std::span<const Body> bodies) {
+  if (all_dirty_) return;
+  if (dirty_.size() + bodies.size() > dirty_limit_) {
+    all_dirty_ = true;
+  } else {
+    dirty_.insert(dirty_.end(), bodies.begin(), bodies.end());
+  }
+}
+
+void QueryTree::refresh(const QueryWorld& world, ThreadTeam& team) {
+  if (is_built_ && dirty_.empty() && !all_dirty_) return;
+  if (workers_.size() < static_cast<std::size_t>(team.size())) {
+    workers_.resize(static_cast<std::size_t>(team.size()));
+  }
+  const bool can_refit = is_built_ && slot_of_.size() <= world.boxes.size();
+  is_built_ = false;
+  if (can_refit) {
+    slot_of_.resize(world.boxes.size(), kNone);
+    if (all_dirty_) {
+      refitAll(world, team);
+    } else {
+      refitDirty(world);
+    }
+  }
+  if (!can_refit || isDegraded(world.boxes.size())) build(world, team);
+  dirty_limit_ = world.boxes.size() / 8 + 16;
+  dirty_.clear();
+  dirty_.reserve(dirty_limit_);
+  all_dirty_ = false;
+  is_built_ = true;
+}
+
+// Building.
+
+void QueryTree::build(const QueryWorld& world, ThreadTeam& team) {
+  items_.clear();
+  for (Body body = 0; body < world.boxes.size(); ++body) {
+    if (!isEmpty(world.boxes[body])) items_.push_back({world.boxes[body], body});
+  }
+  slot_of_.assign(world.boxes.size(), kNone);
+  nodes_.clear();
+  if (team.size() > 1 && items_.size() > kWidth) {
+    buildSubtrees(team);
+  } else {
+    buildNode(nodes_, items_, 0);
+  }
+  linkNodes();
+  built_sizes_.assign(nodes_.size(), std::numeric_limits<float>::max());
+  loose_nodes_ = 0;
+  refitNodes(world, false, {0, nodes_.size()}, workers_[0]);
+  for (NodeIndex node = 1; node < nodes_.size(); ++node) {
+    built_sizes_[node] = sizeOf(extentIn(parent_slots_[node]).bounds);
+  }
+  built_nodes_ = nodes_.size();
+  inserted_ = 0;
+  loose_nodes_ = 0;
+  too_deep_ = false;
+}
+
+QueryTree::NodeIndex QueryTree::buildNode(Nodes& nodes, std::span<QueryItem> items,
+                                          std::uint32_t depth) {
+  /// Deeper, halves: a bad distribution may split off a few bodies at a time.
+  constexpr std::uint32_t kMaxDepthByArea = 16;
+  const auto index = static_cast<NodeIndex>(nodes.size());
+  nodes.push_back(kEmptyNode);
+  if (items.size() <= kWidth) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      nodes[index].children[i] = items[i].body | QueryNode::kBody;
+    }
+    return index;
+  }
+  std::array<Part, kWidth> parts;
+  const std::size_t count = divide(items, depth < kMaxDepthByArea, parts);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::span<QueryItem> part = items.subspan(parts[i].begin, parts[i].size());
+    const std::uint32_t child =
+        part.size() == 1 ? part[0].body | QueryNode::kBody : buildNode(nodes, part, depth + 1);
+    nodes[index].children[i] = child;
+  }
+  return index;
+}
+
+/// The root's children in parallel.
+void QueryTree::buildSubtrees(ThreadTeam& team) {
+  std::array<Part, kWidth> parts;
+  std::array<NodeIndex, kWidth> roots;
+  const std::size_t count = divide(items_, true, parts);
+  team.run(count, [&](int worker, Range range) {
+    Nodes& nodes = workers_[static_cast<std::size_t>(worker)].nodes;
+    nodes.clear();
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const std::span<QueryItem> items = items_;
+      roots[i] = buildNode(nodes, items.subspan(parts[i].begin, parts[i].size()), 1);
+    }
+  });
+  nodes_.push_back(kEmptyNode);
+  for (int worker = 0; worker < team.size(); ++worker) {
+    const auto offset = static_cast<NodeIndex>(nodes_.size());
+    for (QueryNode node : workers_[static_cast<std::size_t>(worker)].nodes) {
+      for (std::uint32_t& child : node.children) child += isNode(child) ? offset : 0;
+      nodes_.push_back(node);
+    }
+    const Range range = share(count, team.size(), worker);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      nodes_[0].children[i] = roots[i] + offset;
+    }
+  }
+}
+
+/// Lets bodies and nodes find the slots that they are in.
+void QueryTree::linkNodes() {
+  parent_slots_.assign(nodes_.size(), kNone);
+  for (SlotIndex slot = 0; slot < nodes_.size() * kWidth; ++slot) {
+    const std::uint32_t child = nodes_[slot / kWidth].children[slot % kWidth];
+    if (isBody(child)) {
+      slot_of_[child & ~QueryNode::kBody] = slot;
+    } else if (isNode(child)) {
+      parent_slots_[child] = slot;
+    }
+  }
+}
+
+// Refitting.
+
+QueryTree::Extent QueryTree::extentOf(NodeIndex node) const {
+  const QueryNode& slots = nodes_[node];
+  Extent extent{};
+  for (int row = 0; row < 6; ++row) {
+    float bound = slots.bounds[row][0];
+    for (std::uint32_t slot = 1; slot < kWidth; ++slot) {
+      const float other = slots.bounds[row][slot];
+      bound = row < 3 ? std::min(bound, other) : std::max(bound, other);
+    }
+    extent.bounds[row] = bound;
+  }
+  for (const std::uint32_t layers : slots.layers) extent.layers |= layers;
+  return extent;
+}
+
+QueryTree::Extent QueryTree::extentIn(SlotIndex slot) const {
+  const QueryNode& node = nodes_[slot / kWidth];
+  Extent extent{};
+  for (int row = 0; row < 6; ++row) extent.bounds[row] = node.bounds[row][slot % kWidth];
+  extent.layers = node.layers[slot % kWidth];
+  return extent;
+}
+
+/// Whether a node has grown so much that its bodies no longer belong together.
+bool QueryTree::isLoose(NodeIndex node, const Extent& extent) const {
+  constexpr float kMaxGrowth = 1.5F;
+  return sizeOf(extent.bounds) > kMaxGrowth * built_sizes_[node];
+}
+
+/// Stores a node's extent in its parent; returns the change in the number of loose nodes.
+int QueryTree::storeExtent(NodeIndex node, const Extent& extent) {
+  const SlotIndex slot = parent_slots_[node];
+  const bool was_loose = isLoose(node, extentIn(slot));
+  QueryNode& parent = nodes_[slot / kWidth];
+  for (int row = 0; row < 6; ++row) parent.bounds[row][slot % kWidth] = extent.bounds[row];
+  parent.layers[slot % kWidth] = extent.layers;
+  return int{isLoose(node, extent)} - int{was_loose};
+}
+
+void QueryTree::setSlot(SlotIndex slot, const Aabb& box, std::uint32_t layers) {
+  QueryNode& node = nodes_[slot / kWidth];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    node.bounds[axis][slot % kWidth] = box.min[axis];
+    node.bounds[axis + 3][slot % kWidth] = box.max[axis];
+  }
+  node.layers[slot % kWidth] = layers;
+}
+
+void QueryTree::placeBody(SlotIndex slot, Body body, const QueryWorld& world) {
+  nodes_[slot / kWidth].children[slot % kWidth] = body | QueryNode::kBody;
+  slot_of_[body] = slot;
+  setSlot(slot, world.boxes[body], std::uint32_t{1} << world.filter.layerOf(body));
+}
+
+void QueryTree::clearSlot(SlotIndex slot) {
+  QueryNode& node = nodes_[slot / kWidth];
+  slot_of_[node.children[slot % kWidth] & ~QueryNode::kBody] = kNone;
+  node.children[slot % kWidth] = QueryNode::kUnused;
+  for (int row = 0; row < 6; ++row) {
+    node.bounds[row][slot % kWidth] = row < 3 ? QueryNode::kMax : -QueryNode::kMax;
+  }
+  node.layers[slot % kWidth] = 0;
+}
+
+/// Whether a box is outside of the bounds that a node had after the last refresh.
+bool QueryTree::hasEscaped(const Aabb& box, NodeIndex node) const {
+  if (node == 0) return false;
+  const Extent before = extentIn(parent_slots_[node]);
+  bool escaped = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    escaped |= box.min[axis] > before.bounds[axis + 3] || box.max[axis] < before.bounds[axis];
+  }
+  return escaped;
+}
+
+/// Up to the first ancestor that stays as it is.
+void QueryTree::refitParents(NodeIndex node) {
+  for (; node != 0; node = parent_slots_[node] / kWidth) {
+    const Extent now = extentOf(node);
+    const Extent before = extentIn(parent_slots_[node]);
+    if (std::ranges::equal(now.bounds, before.bounds) && now.layers == before.layers) return;
+    loose_nodes_ += storeExtent(node, now);
+  }
+}
+
+void QueryTree::refitDirty(const QueryWorld& world) {
+  for (const Body body : dirty_) {
+    const Aabb& box = world.boxes[body];
+    const SlotIndex slot = slot_of_[body];
+    if (slot != kNone) {
+      const bool stays = !isEmpty(box) && !hasEscaped(box, slot / kWidth);
+      if (stays) {
+        placeBody(slot, body, world);
+      } else {
+        clearSlot(slot);
+      }
+      refitParents(slot / kWidth);
+      if (stays) continue;
+    }
+    if (!isEmpty(box)) insert(body, world);
+  }
+}
+
+/// Children before parents. A worker writes only to its nodes, and leaves parents among others' for
+/// later.
+void QueryTree::refitNodes(const QueryWorld& world, bool evicts, Range range, Worker& worker) {
+  worker.postponed.clear();
+  worker.loosened = 0;
+  for (std::size_t i = range.end; i-- > range.begin;) {
+    const auto node = static_cast<NodeIndex>(i);
+    for (std::uint32_t k = 0; k < kWidth; ++k) {
+      const std::uint32_t child = nodes_[node].children[k];
+      if (!isBody(child)) continue;
+      const Body body = child & ~QueryNode::kBody;
+      const Aabb& box = world.boxes[body];
+      if (isEmpty(box) || (evicts && hasEscaped(box, node))) {
+        clearSlot(node * kWidth + k);
+      } else {
+        placeBody(node * kWidth + k, body, world);
+      }
+    }
+    if (node == 0) continue;
+    if (parent_slots_[node] / kWidth < range.begin) {
+      worker.postponed.push_back(node);
+    } else {
+      worker.loosened += storeExtent(node, extentOf(node));
+    }
+  }
+}
+
+void QueryTree::refitAll(const QueryWorld& world, ThreadTeam& team) {
+  team.run(nodes_.size(), [&](int worker, Range range) {
+    refitNodes(world, true, range, workers_[static_cast<std::size_t>(worker)]);
+  });
+  for (int i = 0; i < team.size(); ++i) {
+    const Worker& worker = workers_[static_cast<std::size_t>(i)];
+    loose_nodes_ += worker.loosened;
+    for (const NodeIndex node : worker.postponed) refitParents(node);
+  }
+  for (Body body = 0; body < world.boxes.size(); ++body) {
+    if (slot_of_[body] != kNone || isEmpty(world.boxes[body])) continue;
+    if (isDegraded(world.boxes.size())) return;
+    insert(body, world);
+  }
+}
+
+bool QueryTree::isDegraded(std::size_t bodies) const {
+  return too_deep_ || inserted_ > bodies / 2 + 16 || nodes_.size() > 2 * built_nodes_ + 16 ||
+         loose_nodes_ > static_cast<std::int64_t>(built_nodes_ / 4 + 2);
+}
+
+/// Descends to the child that grows least. Bodies of a full node get one of their own.
+void QueryTree::insert(Body body, const QueryWorld& world) {
+  const Aabb& box = world.boxes[body];
+  NodeIndex node = 0;
+  std::uint32_t depth = 0;
+  while (true) {
+    const auto growth = [&](std::uint32_t slot) {
+      const Extent extent = extentIn(node * kWidth + slot);
+      Bounds bounds;
+      bounds.add(Corner{extent.bounds[0], extent.bounds[1], extent.bounds[2]},
+                 Corner{extent.bounds[3], extent.bounds[4], extent.bounds[5]});
+      const double before = extent.layers == 0 ? 0 : areaOf(bounds);
+      bounds.add(minCorner(box), maxCorner(box));
+      return areaOf(bounds) - before;
+    };
+    std::uint32_t unused = kNone;
+    std::uint32_t nearest_node = kNone;
+    std::uint32_t nearest_body = kNone;
+    double least_for_node = 0;
+    double least_for_body = 0;
+    for (std::uint32_t slot = 0; slot < kWidth; ++slot) {
+      const std::uint32_t child = nodes_[node].children[slot];
+      if (child == QueryNode::kUnused) {
+        unused = slot;
+        continue;
+      }
+      std::uint32_t& nearest = isBody(child) ? nearest_body : nearest_node;
+      double& least = isBody(child) ? least_for_body : least_for_node;
+      const double area = growth(slot);
+      if (nearest == kNone || area < least) nearest = slot, least = area;
+    }
+    if (nearest_node != kNone) {
+      node = nodes_[node].children[nearest_node];
+      ++depth;
+      continue;
+    }
+    if (unused != kNone) {
+      placeBody(node * kWidth + unused, body, world);
+      break;
+    }
+    const auto added = static_cast<NodeIndex>(nodes_.size());
+    const SlotIndex slot = node * kWidth + nearest_body;
+    nodes_.push_back(kEmptyNode);
+    parent_slots_.push_back(slot);
+    built_sizes_.push_back(std::numeric_limits<float>::max());
+    placeBody(added * kWidth, nodes_[node].children[nearest_body] & ~QueryNode::kBody, world);
+    placeBody(added * kWidth + 1, body, world);
+    nodes_[node].children[nearest_body] = added;
+    const Extent extent = extentOf(added);
+    storeExtent(added, extent);
+    built_sizes_[added] = sizeOf(extent.bounds);
+    too_deep_ |= depth + 1 >= QueryKernels::kMaxDepth;
+    break;
+  }
+  ++inserted_;
+  refitParents(node);
+}
+
+// Queries.
+
+template <class Query, class T, class Answer>
+void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& results,
+                          std::vector<T> Worker::*found, ThreadTeam& team, Answer answer) {
+  constexpr std::size_t kMinQueriesForThreads = 64;
+  results.items.clear();
+  results.starts.resize(queries.size() + 1);
+  const auto answer_range = [&](Range range, std::vector<T>& items) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      results.starts[i] = items.size();
+      answer(queries[i], items);
+    }
+  };
+  if (team.size() == 1 || queries.size() < kMinQueriesForThreads) {
+    answer_range({0, queries.size()}, results.items);
+  } else {
+    team.run(queries.size(), [&](int worker, Range range) {
+      std::vector<T>& items =
+          worker == 0 ? results.items : workers_[static_cast<std::size_t>(worker)].*found;
+      items.clear();
+      answer_range(range, items);
+    });
+    for (int worker = 1; worker < team.size(); ++worker) {
+      const std::vector<T>& items = workers_[static_cast<std::size_t>(worker)].*found;
+      const Range range = share(queries.size(), team.size(), worker);
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        results.starts[i] += results.items.size();
+      }
+      results.items.insert(results.items.end(), items.begin(), items.end());
+    }
+  }
+  results.starts[queries.size()] = results.items.size();
+}
+
+namespace {
+
+/// Calls visit(body, slot) for each.
+template <class Visit>
+void forEachBody(const QueryNode& node, unsigned slots, Visit visit) {
+  for (; slots != 0; slots &= slots - 1) {
+    const int slot = std::countr_zero(slots);
+    visit(node.children[slot] & ~QueryNode::kBody, slot);
+  }
+}
+
+void addBodies(void* context, const QueryNode& node, unsigned slots) {
+  auto& bodies = *static_cast<std::vector<std::uint32_t>*>(context);
+  forEachBody(node, slots, [&](std::uint32_t body, int) { bodies.push_back(body); });
+}
+
+struct HitCollector {
+  double max_fraction;
+  double limit;
+  std::size_t first;
+  std::vector<CastHit>& hits;
+
+  [[nodiscard]] CastHit hitOf(std::uint32_t body, double time) const {
+    return {smallerOf(time, max_fraction) + 0.0, body};  // no -0
+  }
+};
+
+double addHits(void* context, const QueryNode& node, unsigned slots, const double* times) {
+  auto& collector = *static_cast<HitCollector*>(context);
+  forEachBody(node, slots, [&](std::uint32_t body, int slot) {
+    collector.hits.push_back(collector.hitOf(body, times[slot]));
+  });
+  return collector.limit;
+}
+
+double keepClosest(void* context, const QueryNode& node, unsigned slots, const double* times) {
+  auto& collector = *static_cast<HitCollector*>(context);
+  forEachBody(node, slots, [&](std::uint32_t body, int slot) {
+    const CastHit hit = collector.hitOf(body, times[slot]);
+    if (collector.hits.size() == collector.first) {
+      collector.hits.push_back(hit);
+    } else {
+      collector.hits.back() = std::min(collector.hits.back(), hit);
+    }
+  });
+  const double closest = collector.hits.back().fraction;
+  return closest < collector.max_fraction ? closest : collector.limit;
+}
+
+/// Keeps the nearest bodies as a heap, the farthest first. Their distances are still squared.
+struct NeighbourHeap {
+  double limit;
+  std::size_t first;
+  std::size_t count;
+  std::vector<Neighbour>& neighbours;
+
+  static bool isNearer(const Neighbour& a, const Neighbour& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.body < b.body;
+  }
+  [[nodiscard]] std::span<Neighbour> heap() const { return std::span(neighbours).subspan(first); }
+
+  void add(const Neighbour& neighbour) {
+    if (heap().size() == count) {
+      if (!isNearer(neighbour, heap().front())) return;
+      std::ranges::pop_heap(heap(), isNearer);
+      neighbours.back() = neighbour;
+    } else {
+      neighbours.push_back(neighbour);
+    }
+    std::ranges::push_heap(heap(), isNearer);
+    if (heap().size() == count) limit = heap().front().distance;
+  }
+};
+
+double addNeighbours(void* context, const QueryNode& node, unsigned slots, const double* squares) {
+  auto& heap = *static_cast<NeighbourHeap*>(context);
+  forEachBody(node, slots, [&](std::uint32_t body, int slot) { heap.add({squares[slot], body}); });
+  return heap.limit;
+}
+
+}  // namespace
+
+void QueryTree::overlapping(std::span<const BoxQuery> queries, QueryResults<Body>& results,
+                            ThreadTeam& team) {
+  answerAll(queries, results, &Worker::bodies, team,
+            [this](const BoxQuery& query, std::vector<Body>& bodies) {
+              BoxTest test;
+              std::ranges::copy(query.box.min, test.bounds);
+              std::ranges::copy(query.box.max, test.bounds + 3);
+              test.layers = query.layers;
+              const auto first = static_cast<std::ptrdiff_t>(bodies.size());
+              kernels_.overlapping(nodes_.data(), test, {addBodies, &bodies});
+              std::sort(bodies.begin() + first, bodies.end());
+            });
+}
+
+void QueryTree::cast(std::span<const Cast> casts, Hits wanted, QueryResults<CastHit>& results,
+                     ThreadTeam& team) {
+  answerAll(casts, results, &Worker::hits, team,
+            [this, wanted](const Cast& cast, std::vector<CastHit>& hits) {
+              CastTest test;
+              for (int axis = 0; axis < 3; ++axis) {
+                test.axes[axis] =
+                    CastAxis(cast.box.min[axis], cast.box.max[axis], cast.direction[axis]);
+              }
+              test.limit = castLimit(cast.max_fraction);
+              test.layers = cast.layers;
+              HitCollector collector = {cast.max_fraction, test.limit, hits.size(), hits};
+              const auto first = static_cast<std::ptrdiff_t>(hits.size());
+              kernels_.cast(nodes_.data(), test,
+                            {wanted == Hits::closest ? keepClosest : addHits, &collector});
+              std::sort(hits.begin() + first, hits.end());
+            });
+}
+
+void QueryTree::nearest(std::span<const NearestQuery> queries, QueryResults<Neighbour>& results,
+                        ThreadTeam& team) {
+  answerAll(queries, results, &Worker::neighbours, team,
+            [this](const NearestQuery& query, std::vector<Neighbour>& neighbours) {
+              if (query.count == 0) return;
+              NearestTest test;
+              std::ranges::copy(query.point, test.point);
+              test.limit = squaredLimit(query.max_distance);
+              test.layers = query.layers;
+              NeighbourHeap heap = {test.limit, neighbours.size(), query.count, neighbours};
+              kernels_.nearest(nodes_.data(), test, {addNeighbours, &heap});
+              std::ranges::sort_heap(heap.heap(), NeighbourHeap::isNearer);
+              for (Neighbour& neighbour : heap.heap()) {
+                neighbour.distance = std::sqrt(neighbour.distance);
+              }
+            });
+}
+
+}  // namespace broadmark::broadphase
