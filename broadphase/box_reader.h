@@ -112,7 +112,7 @@ inline bool isValid(const Aabb& box) {
 }
 
 /// Why a box is not finite, or reversed.
-inline std::string faultOf(const Aabb& box) {
+[[gnu::cold]] inline std::string faultOf(const Aabb& box) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     if (std::isnan(box.min[axis]) || std::isnan(box.max[axis])) return name + " is NaN";

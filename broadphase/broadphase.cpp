@@ -34,7 +34,7 @@ std::span<const Pair> published(PairRun run) {
   return {reinterpret_cast<const Pair*>(run.data()), run.size()};
 }
 
-std::string numbered(const char* what, std::size_t number) {
+[[gnu::cold]] std::string numbered(const char* what, std::size_t number) {
   return std::string(what).append(" ").append(std::to_string(number));
 }
 
@@ -565,7 +565,7 @@ void BroadPhase::Implementation::setFilter(Body body, const Filter& filter) {
 
 namespace {
 
-[[noreturn]] void refuse(std::size_t query, const std::string& fault) {
+[[noreturn, gnu::cold]] void refuse(std::size_t query, const std::string& fault) {
   throw std::invalid_argument(numbered("query", query) + ": " + fault);
 }
 

@@ -31,6 +31,8 @@ struct BoxTest {
 
 struct CastTest {
   CastAxis axes[3];
+  std::size_t near_rows[3];  ///< of the bounds
+  std::size_t far_rows[3];
   double limit;
   std::uint32_t layers;
 };

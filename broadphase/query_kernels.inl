@@ -9,66 +9,78 @@ using broadphase::NearestTest;
 using broadphase::OrderedVisitor;
 using broadphase::QueryKernels;
 using broadphase::QueryNode;
+using broadphase::largerOf;
+using broadphase::smallerOf;
 
 inline constexpr std::uint32_t kWidth = QueryNode::kWidth;
 inline constexpr std::size_t kStackSize = (kWidth - 1) * (QueryKernels::kMaxDepth + 1) + 1;
 
-/// Bit i for each slot i with hits[i] != 0.
-inline unsigned slotBits(const std::uint32_t (&hits)[kWidth]) {
+// These may read arrays of their elements.
+using Floats = float __attribute__((vector_size(32), may_alias));
+using SlotMask = std::int32_t __attribute__((vector_size(32), may_alias));
+
+/// Bit i for each slot i of which the mask is set.
+inline unsigned slotBits(SlotMask mask) {
+#if defined(__SSE2__)
+  const auto low = __builtin_shufflevector(mask, mask, 0, 1, 2, 3);
+  const auto high = __builtin_shufflevector(mask, mask, 4, 5, 6, 7);
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(low)) |
+                               _mm_movemask_ps(reinterpret_cast<__m128>(high)) << 4);
+#else
   unsigned bits = 0;
-  for (std::uint32_t i = 0; i < kWidth; ++i) bits |= hits[i] & 1U << i;
+  for (std::uint32_t i = 0; i < kWidth; ++i) bits |= static_cast<unsigned>(mask[i]) & 1U << i;
   return bits;
+#endif
+}
+
+inline Floats boundsIn(const float (&row)[kWidth]) { return reinterpret_cast<const Floats&>(row); }
+inline SlotMask slotsWith(std::uint32_t layers, const QueryNode& node) {
+  return (reinterpret_cast<const SlotMask&>(node.layers) & static_cast<std::int32_t>(layers)) != 0;
 }
 
 inline unsigned testSlots(const QueryNode& node, const BoxTest& test) {
-  std::uint32_t hits[kWidth];
-  for (std::uint32_t i = 0; i < kWidth; ++i) {
-    const bool hit = (node.bounds[0][i] <= test.bounds[3]) & (test.bounds[0] <= node.bounds[3][i]) &
-                     (node.bounds[1][i] <= test.bounds[4]) & (test.bounds[1] <= node.bounds[4][i]) &
-                     (node.bounds[2][i] <= test.bounds[5]) & (test.bounds[2] <= node.bounds[5][i]) &
-                     ((node.layers[i] & test.layers) != 0);
-    hits[i] = hit ? ~0U : 0;
-  }
-  return slotBits(hits);
+  return slotBits((boundsIn(node.bounds[0]) <= test.bounds[3]) &
+                  (boundsIn(node.bounds[3]) >= test.bounds[0]) &
+                  (boundsIn(node.bounds[1]) <= test.bounds[4]) &
+                  (boundsIn(node.bounds[4]) >= test.bounds[1]) &
+                  (boundsIn(node.bounds[2]) <= test.bounds[5]) &
+                  (boundsIn(node.bounds[5]) >= test.bounds[2]) & slotsWith(test.layers, node));
 }
 
 inline unsigned testSlots(const QueryNode& node, const CastTest& test, double limit,
                           double (&values)[kWidth]) {
-  const float* nears[3];
-  const float* fars[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool backwards = test.axes[axis].backwards;
-    nears[axis] = node.bounds[backwards ? axis + 3 : axis];
-    fars[axis] = node.bounds[backwards ? axis : axis + 3];
-  }
-  std::uint32_t hits[kWidth];
+  alignas(32) std::int32_t hits[kWidth];
   for (std::uint32_t i = 0; i < kWidth; ++i) {
-    double enters = 0;
-    double leaves = limit;
-    for (int axis = 0; axis < 3; ++axis) {
-      enters = broadphase::largerOf(enters, test.axes[axis].timeOfNear(nears[axis][i]));
-      leaves = broadphase::smallerOf(leaves, test.axes[axis].timeOfFar(fars[axis][i]));
-    }
-    values[i] = enters;
-    hits[i] = (enters <= leaves) & ((node.layers[i] & test.layers) != 0) ? ~0U : 0;
+    const auto near_time = [&](int axis) __attribute__((always_inline)) {
+      return test.axes[axis].timeOfNear(node.bounds[test.near_rows[axis]][i]);
+    };
+    const auto far_time = [&](int axis) __attribute__((always_inline)) {
+      return test.axes[axis].timeOfFar(node.bounds[test.far_rows[axis]][i]);
+    };
+    const double enter =
+        largerOf(largerOf(near_time(0), near_time(1)), largerOf(near_time(2), 0));
+    const double leave = smallerOf(smallerOf(far_time(0), far_time(1)), far_time(2));
+    values[i] = enter;
+    hits[i] = enter <= smallerOf(limit, leave * (1 + broadphase::kCastTolerance)) ? -1 : 0;
   }
-  return slotBits(hits);
+  return slotBits(reinterpret_cast<const SlotMask&>(hits) & slotsWith(test.layers, node));
 }
 
 inline unsigned testSlots(const QueryNode& node, const NearestTest& test, double limit,
                           double (&values)[kWidth]) {
-  std::uint32_t hits[kWidth];
+  alignas(32) std::int32_t hits[kWidth];
   for (std::uint32_t i = 0; i < kWidth; ++i) {
-    double squares = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double distance = broadphase::axisDistance(
-          test.point[axis], node.bounds[axis][i], node.bounds[axis + 3][i]);
-      squares += distance * distance;
-    }
-    values[i] = squares;
-    hits[i] = (squares <= limit) & ((node.layers[i] & test.layers) != 0) ? ~0U : 0;
+    const auto distance = [&](int axis) __attribute__((always_inline)) {
+      return broadphase::axisDistance(test.point[axis], node.bounds[axis][i],
+                                      node.bounds[axis + 3][i]);
+    };
+    const double x = distance(0);
+    const double y = distance(1);
+    const double z = distance(2);
+    values[i] = x * x + y * y + z * z;
+    hits[i] = values[i] <= limit ? -1 : 0;
   }
-  return slotBits(hits);
+  return slotBits(reinterpret_cast<const SlotMask&>(hits) & slotsWith(test.layers, node));
 }
 
 void findOverlapping(const QueryNode* nodes, const BoxTest& test, BoxVisitor visitor) {

@@ -11,41 +11,42 @@ inline constexpr double kCastTolerance = 0x1p-50;
 /// Above every time of every cast of floats, and every squared distance.
 inline constexpr double kNoLimit = 0x1p300;
 
-/// One axis of a cast: when it is at a bound of a box.
+[[gnu::always_inline]] inline double smallerOf(double a, double b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline double largerOf(double a, double b) { return a > b ? a : b; }
+
+/// One axis of a cast: when it is at a bound of a box, in units of the direction.
 ///
-/// Time is in units of the direction. A direction of 0 is replaced by one so small that a box ahead
-/// is reached after kNoLimit; one that is touched is entered before time 0, and left after
-/// kNoLimit.
+/// A direction of 0 is replaced by a very small one: a box ahead is reached after kNoLimit; one
+/// that is touched has been reached at time 0, and is left after kNoLimit.
 struct CastAxis {
-  double near_origin;  ///< side of the moving box that meets the near bound
+  double near_origin;  ///< the side of the moving box that meets the near bound
   double far_origin;
   double inverse;  ///< of the direction
-  double slack;    ///< 0, except for a direction of 0
   bool backwards;  ///< the near bound is the box's max
 
   CastAxis() = default;
   CastAxis(float min, float max, float direction)
       : near_origin(direction < 0 ? min : max),
         far_origin(direction < 0 ? max : min),
-        inverse(direction == 0 ? 0x1p600 : 1 / static_cast<double>(direction)),
-        slack(direction == 0 ? 0x1p400 : 0),
-        backwards(direction < 0) {}
+        inverse(1 / static_cast<double>(direction)),
+        backwards(direction < 0) {
+    if (direction != 0) return;
+    inverse = 0x1p600;
+    const double size = min < 0 ? -far_origin : far_origin;
+    far_origin -= largerOf(size * 0x1p-50, 0x1p-200);  // above the next lower float
+  }
 
   /// Negative if it has passed the bound.
   [[gnu::always_inline]] double timeOfNear(float bound) const {
-    return (static_cast<double>(bound) - near_origin) * inverse - slack;
+    return (static_cast<double>(bound) - near_origin) * inverse;
   }
-  /// With tolerance.
   [[gnu::always_inline]] double timeOfFar(float bound) const {
-    return ((static_cast<double>(bound) - far_origin) * inverse + slack) * (1 + kCastTolerance);
+    return (static_cast<double>(bound) - far_origin) * inverse;
   }
 };
 
-[[gnu::always_inline]] inline double smallerOf(double a, double b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline double largerOf(double a, double b) { return a > b ? a : b; }
-
-/// A cast enters a box at the latest `timeOfNear` of the axes, at least 0. It hits if that is
-/// neither after the earliest `timeOfFar` nor after its limit.
+/// A cast enters a box at the latest `timeOfNear` of the axes, and at least 0. It hits if that is
+/// neither after the earliest `timeOfFar`, with tolerance, nor after its limit.
 inline double castLimit(float max_fraction) {
   return smallerOf(static_cast<double>(max_fraction) * (1 + kCastTolerance), kNoLimit);
 }

@@ -102,7 +102,7 @@ float sizeOf(const float (&bounds)[6]) {
 /// Splits items into two, of which neither is empty.
 class Splitter {
  public:
-  /// By the surface area heuristic, or in halves.
+  /// By the surface area heuristic, or halves in any order.
   static std::array<Part, 2> split(std::span<QueryItem> items, const Part& part, bool by_area) {
     const std::span<QueryItem> range = items.subspan(part.begin, part.size());
     Bounds centres;
@@ -134,11 +134,6 @@ class Splitter {
         return bin_of(item) < first_above;
       });
       middle = static_cast<std::size_t>(above - range.begin());
-    } else {
-      std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(middle),
-                       range.end(), [&](const QueryItem& a, const QueryItem& b) {
-                         return centreOf(a.box)[axis] < centreOf(b.box)[axis];
-                       });
     }
     std::array<Part, 2> parts = {Part{part.begin, part.begin + middle, {}},
                                  Part{part.begin + middle, part.end, {}}};
@@ -554,29 +549,28 @@ void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& resul
   constexpr std::size_t kMinQueriesForThreads = 64;
   results.items.clear();
   results.starts.resize(queries.size() + 1);
-  const auto answer_range = [&](Range range, std::vector<T>& items) {
+  const auto answer_range = [&](int worker, Range range) {
+    std::vector<T>& items =
+        worker == 0 ? results.items : workers_[static_cast<std::size_t>(worker)].*found;
+    items.clear();
     for (std::size_t i = range.begin; i < range.end; ++i) {
       results.starts[i] = items.size();
       answer(queries[i], items);
     }
   };
-  if (team.size() == 1 || queries.size() < kMinQueriesForThreads) {
-    answer_range({0, queries.size()}, results.items);
+  const int workers = queries.size() < kMinQueriesForThreads ? 1 : team.size();
+  if (workers == 1) {
+    answer_range(0, {0, queries.size()});
   } else {
-    team.run(queries.size(), [&](int worker, Range range) {
-      std::vector<T>& items =
-          worker == 0 ? results.items : workers_[static_cast<std::size_t>(worker)].*found;
-      items.clear();
-      answer_range(range, items);
-    });
-    for (int worker = 1; worker < team.size(); ++worker) {
-      const std::vector<T>& items = workers_[static_cast<std::size_t>(worker)].*found;
-      const Range range = share(queries.size(), team.size(), worker);
-      for (std::size_t i = range.begin; i < range.end; ++i) {
-        results.starts[i] += results.items.size();
-      }
-      results.items.insert(results.items.end(), items.begin(), items.end());
+    team.run(queries.size(), answer_range);
+  }
+  for (int worker = 1; worker < workers; ++worker) {
+    const std::vector<T>& items = workers_[static_cast<std::size_t>(worker)].*found;
+    const Range range = share(queries.size(), workers, worker);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      results.starts[i] += results.items.size();
     }
+    results.items.insert(results.items.end(), items.begin(), items.end());
   }
   results.starts[queries.size()] = results.items.size();
 }
@@ -673,7 +667,7 @@ void QueryTree::overlapping(std::span<const BoxQuery> queries, QueryResults<Body
               test.layers = query.layers;
               const auto first = static_cast<std::ptrdiff_t>(bodies.size());
               kernels_.overlapping(nodes_.data(), test, {addBodies, &bodies});
-              std::sort(bodies.begin() + first, bodies.end());
+              std::ranges::sort(bodies.begin() + first, bodies.end());
             });
 }
 
@@ -682,9 +676,11 @@ void QueryTree::cast(std::span<const Cast> casts, Hits wanted, QueryResults<Cast
   answerAll(casts, results, &Worker::hits, team,
             [this, wanted](const Cast& cast, std::vector<CastHit>& hits) {
               CastTest test;
-              for (int axis = 0; axis < 3; ++axis) {
+              for (std::size_t axis = 0; axis < 3; ++axis) {
                 test.axes[axis] =
                     CastAxis(cast.box.min[axis], cast.box.max[axis], cast.direction[axis]);
+                test.near_rows[axis] = test.axes[axis].backwards ? axis + 3 : axis;
+                test.far_rows[axis] = test.axes[axis].backwards ? axis : axis + 3;
               }
               test.limit = castLimit(cast.max_fraction);
               test.layers = cast.layers;
@@ -692,7 +688,7 @@ void QueryTree::cast(std::span<const Cast> casts, Hits wanted, QueryResults<Cast
               const auto first = static_cast<std::ptrdiff_t>(hits.size());
               kernels_.cast(nodes_.data(), test,
                             {wanted == Hits::closest ? keepClosest : addHits, &collector});
-              std::sort(hits.begin() + first, hits.end());
+              std::ranges::sort(hits.begin() + first, hits.end());
             });
 }
 

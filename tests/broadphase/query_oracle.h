@@ -40,7 +40,7 @@ struct QueryOracle {
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
       if (!isCandidate(body, cast.layers)) continue;
       double enters = 0;
-      double leaves = bp::castLimit(cast.max_fraction);
+      double leaves = bp::kNoLimit;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const bp::CastAxis moving(cast.box.min[axis], cast.box.max[axis], cast.direction[axis]);
         const float low = boxes[body].min[axis];
@@ -48,7 +48,9 @@ struct QueryOracle {
         enters = std::max(enters, moving.timeOfNear(moving.backwards ? high : low));
         leaves = std::min(leaves, moving.timeOfFar(moving.backwards ? low : high));
       }
-      if (enters <= leaves) hits.push_back({std::min<double>(enters, cast.max_fraction), body});
+      const double limit = bp::castLimit(cast.max_fraction);
+      if (enters > std::min(leaves * (1 + bp::kCastTolerance), limit)) continue;
+      hits.push_back({std::min<double>(enters, cast.max_fraction), body});
     }
     std::ranges::sort(hits);
     if (wanted == bp::Hits::closest && hits.size() > 1) hits.resize(1);
