@@ -63,14 +63,26 @@ double areaOf(const Bounds& bounds) {
 /// Twice the centre may overflow.
 Corner centreOf(const Aabb& box) { return minCorner(box) * 0.5F + maxCorner(box) * 0.5F; }
 
-/// A range of items.
-struct Part {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  Bounds bounds;
+}  // namespace
 
-  [[nodiscard]] std::size_t size() const { return end - begin; }
+/// Some items, with the bounds of their boxes and of the centres of these.
+struct QueryPart {
+  std::span<QueryItem> items;
+  Bounds bounds;
+  Bounds centres;
+
+  void add(const QueryItem& item) {
+    const Corner centre = centreOf(item.box);
+    bounds.add(minCorner(item.box), maxCorner(item.box));
+    centres.add(centre, centre);
+  }
+  void add(const QueryPart& other) {
+    bounds.add(other.bounds);
+    centres.add(other.centres);
+  }
 };
+
+namespace {
 
 constexpr QueryNode kEmptyNode = [] {
   QueryNode node{};
@@ -99,68 +111,60 @@ float sizeOf(const float (&bounds)[6]) {
   return size;
 }
 
-/// Splits items into two, of which neither is empty.
+/// Splits a part in two by the surface area heuristic.
 class Splitter {
  public:
-  /// By the surface area heuristic, or halves in any order.
-  static std::array<Part, 2> split(std::span<QueryItem> items, const Part& part, bool by_area) {
-    const std::span<QueryItem> range = items.subspan(part.begin, part.size());
-    Bounds centres;
-    for (const QueryItem& item : range) {
-      const Corner centre = centreOf(item.box);
-      centres.add(centre, centre);
+  explicit Splitter(const QueryPart& part)
+      : bin_count_(std::clamp<std::size_t>(part.items.size() / 4, 4, kMaxBins)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double extent = double{part.centres.max[axis]} - double{part.centres.min[axis]};
+      if (extent > extent_) extent_ = extent, axis_ = axis;
     }
-    int axis = 0;
-    double extent = -1;
-    for (int i = 0; i < 3; ++i) {
-      const double other = double{centres.max[i]} - double{centres.min[i]};
-      if (other > extent) extent = other, axis = i;
+    origin_ = part.centres.min[axis_];
+    scale_ = static_cast<double>(bin_count_) * (1 - 1e-9) / extent_;
+  }
+
+  /// Whether the centres differ.
+  [[nodiscard]] bool canSplit() const { return extent_ > 0; }
+
+  [[nodiscard]] std::array<QueryPart, 2> split(const QueryPart& part) {
+    for (const QueryItem& item : part.items) {
+      Bin& bin = bins_[binOf(item)];
+      bin.part.add(item);
+      ++bin.count;
     }
-    const double origin = centres.min[axis];
-    std::size_t middle = range.size() / 2;
-    if (by_area && extent > 0) {
-      const double scale = kBins * (1 - 1e-9) / extent;
-      const auto bin_of = [&](const QueryItem& item) {
-        return static_cast<std::size_t>((double{centreOf(item.box)[axis]} - origin) * scale);
-      };
-      Bin bins[kBins];
-      for (const QueryItem& item : range) {
-        Bin& bin = bins[bin_of(item)];
-        bin.bounds.add(minCorner(item.box), maxCorner(item.box));
-        ++bin.count;
-      }
-      const std::size_t first_above = bestSplit(bins, range.size());
-      const auto above = std::partition(range.begin(), range.end(), [&](const QueryItem& item) {
-        return bin_of(item) < first_above;
-      });
-      middle = static_cast<std::size_t>(above - range.begin());
+    const std::size_t first_above = bestSplit(part.items.size());
+    const auto above =
+        std::partition(part.items.begin(), part.items.end(),
+                       [&](const QueryItem& item) { return binOf(item) < first_above; });
+    std::array<QueryPart, 2> halves = {QueryPart{{part.items.begin(), above}, {}, {}},
+                                       QueryPart{{above, part.items.end()}, {}, {}}};
+    for (std::size_t bin = 0; bin < bin_count_; ++bin) {
+      halves[bin < first_above ? 0 : 1].add(bins_[bin].part);
     }
-    std::array<Part, 2> parts = {Part{part.begin, part.begin + middle, {}},
-                                 Part{part.begin + middle, part.end, {}}};
-    for (Part& half : parts) {
-      for (const QueryItem& item : items.subspan(half.begin, half.size())) {
-        half.bounds.add(minCorner(item.box), maxCorner(item.box));
-      }
-    }
-    return parts;
+    return halves;
   }
 
  private:
-  static constexpr std::size_t kBins = 16;
+  static constexpr std::size_t kMaxBins = 16;
 
   struct Bin {
-    Bounds bounds;
+    QueryPart part;
     std::size_t count = 0;
   };
 
+  [[nodiscard]] std::size_t binOf(const QueryItem& item) const {
+    return static_cast<std::size_t>((double{centreOf(item.box)[axis_]} - origin_) * scale_);
+  }
+
   /// The first bin above the split; the first and the last bin are not empty.
-  static std::size_t bestSplit(const Bin (&bins)[kBins], std::size_t count) {
-    double costs_above[kBins];
+  [[nodiscard]] std::size_t bestSplit(std::size_t count) const {
+    double costs_above[kMaxBins];
     Bounds bounds;
     std::size_t above = 0;
-    for (std::size_t bin = kBins; bin-- > 1;) {
-      bounds.add(bins[bin].bounds);
-      above += bins[bin].count;
+    for (std::size_t bin = bin_count_; bin-- > 1;) {
+      bounds.add(bins_[bin].part.bounds);
+      above += bins_[bin].count;
       costs_above[bin] = areaOf(bounds) * static_cast<double>(above);
     }
     bounds = {};
@@ -168,9 +172,9 @@ class Splitter {
     std::size_t best_imbalance = 0;
     double best_cost = 0;
     std::size_t below = 0;
-    for (std::size_t bin = 1; bin < kBins; ++bin) {
-      bounds.add(bins[bin - 1].bounds);
-      below += bins[bin - 1].count;
+    for (std::size_t bin = 1; bin < bin_count_; ++bin) {
+      bounds.add(bins_[bin - 1].part.bounds);
+      below += bins_[bin - 1].count;
       const double cost = areaOf(bounds) * static_cast<double>(below) + costs_above[bin];
       const std::size_t imbalance = std::max(below, count - below);  // all areas may be 0
       if (best == 0 || cost < best_cost || (cost == best_cost && imbalance < best_imbalance)) {
@@ -181,25 +185,47 @@ class Splitter {
     }
     return best;
   }
+
+  std::size_t bin_count_;
+  int axis_ = 0;
+  double extent_ = 0;
+  double origin_ = 0;
+  double scale_ = 0;
+  Bin bins_[kMaxBins];
 };
 
-/// Divides a part into up to eight, until they fit in nodes.
-std::size_t divide(std::span<QueryItem> items, bool by_area, std::array<Part, kWidth>& parts) {
-  parts[0] = {0, items.size(), {}};
+QueryPart partOf(std::span<QueryItem> items) {
+  QueryPart part{items, {}, {}};
+  for (const QueryItem& item : items) part.add(item);
+  return part;
+}
+
+/// Divides a part into up to eight, until they fit in nodes; returns their number. `by_area`: else
+/// into halves, in any order.
+std::size_t divide(const QueryPart& whole, bool by_area, std::array<QueryPart, kWidth>& parts) {
+  parts[0] = whole;
   std::size_t count = 1;
   while (count < kWidth) {
     std::size_t largest = count;
     double largest_area = -1;
     for (std::size_t i = 0; i < count; ++i) {
-      const double area = by_area ? areaOf(parts[i].bounds) : static_cast<double>(parts[i].size());
-      if (parts[i].size() <= kWidth || (count > 1 && area <= largest_area)) continue;
+      const double area = by_area ? areaOf(parts[i].bounds) : double(parts[i].items.size());
+      if (parts[i].items.size() <= kWidth || area <= largest_area) continue;
       largest = i;
       largest_area = area;
     }
     if (largest == count) break;
-    const auto halves = Splitter::split(items, parts[largest], by_area);
-    parts[largest] = halves[0];
-    parts[count++] = halves[1];
+    QueryPart& part = parts[largest];
+    Splitter splitter(part);
+    if (by_area && splitter.canSplit()) {
+      const auto halves = splitter.split(part);
+      part = halves[0];
+      parts[count++] = halves[1];
+    } else {
+      const std::size_t middle = part.items.size() / 2;
+      parts[count++] = partOf(part.items.subspan(middle));
+      part = partOf(part.items.first(middle));
+    }
   }
   return count;
 }
@@ -252,7 +278,7 @@ void QueryTree::build(const QueryWorld& world, ThreadTeam& team) {
   if (team.size() > 1 && items_.size() > kWidth) {
     buildSubtrees(team);
   } else {
-    buildNode(nodes_, items_, 0);
+    buildNode(nodes_, partOf(items_), 0);
   }
   linkNodes();
   built_sizes_.assign(nodes_.size(), std::numeric_limits<float>::max());
@@ -267,24 +293,24 @@ void QueryTree::build(const QueryWorld& world, ThreadTeam& team) {
   too_deep_ = false;
 }
 
-QueryTree::NodeIndex QueryTree::buildNode(Nodes& nodes, std::span<QueryItem> items,
+QueryTree::NodeIndex QueryTree::buildNode(Nodes& nodes, const QueryPart& part,
                                           std::uint32_t depth) {
   /// Deeper, halves: a bad distribution may split off a few bodies at a time.
   constexpr std::uint32_t kMaxDepthByArea = 16;
   const auto index = static_cast<NodeIndex>(nodes.size());
   nodes.push_back(kEmptyNode);
-  if (items.size() <= kWidth) {
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      nodes[index].children[i] = items[i].body | QueryNode::kBody;
+  if (part.items.size() <= kWidth) {
+    for (std::size_t i = 0; i < part.items.size(); ++i) {
+      nodes[index].children[i] = part.items[i].body | QueryNode::kBody;
     }
     return index;
   }
-  std::array<Part, kWidth> parts;
-  const std::size_t count = divide(items, depth < kMaxDepthByArea, parts);
+  std::array<QueryPart, kWidth> parts;
+  const std::size_t count = divide(part, depth < kMaxDepthByArea, parts);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::span<QueryItem> part = items.subspan(parts[i].begin, parts[i].size());
-    const std::uint32_t child =
-        part.size() == 1 ? part[0].body | QueryNode::kBody : buildNode(nodes, part, depth + 1);
+    const std::uint32_t child = parts[i].items.size() == 1
+                                    ? parts[i].items[0].body | QueryNode::kBody
+                                    : buildNode(nodes, parts[i], depth + 1);
     nodes[index].children[i] = child;
   }
   return index;
@@ -292,15 +318,14 @@ QueryTree::NodeIndex QueryTree::buildNode(Nodes& nodes, std::span<QueryItem> ite
 
 /// The root's children in parallel.
 void QueryTree::buildSubtrees(ThreadTeam& team) {
-  std::array<Part, kWidth> parts;
+  std::array<QueryPart, kWidth> parts;
   std::array<NodeIndex, kWidth> roots;
-  const std::size_t count = divide(items_, true, parts);
+  const std::size_t count = divide(partOf(items_), true, parts);
   team.run(count, [&](int worker, Range range) {
     Nodes& nodes = workers_[static_cast<std::size_t>(worker)].nodes;
     nodes.clear();
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const std::span<QueryItem> items = items_;
-      roots[i] = buildNode(nodes, items.subspan(parts[i].begin, parts[i].size()), 1);
+      roots[i] = buildNode(nodes, parts[i], 1);
     }
   });
   nodes_.push_back(kEmptyNode);

@@ -28,6 +28,7 @@ struct QueryItem {
   Aabb box;
   std::uint32_t body;
 };
+struct QueryPart;
 
 class QueryTree {
  public:
@@ -75,7 +76,7 @@ class QueryTree {
   };
 
   void build(const QueryWorld& world, ThreadTeam& team);
-  static NodeIndex buildNode(Nodes& nodes, std::span<QueryItem> items, std::uint32_t depth);
+  static NodeIndex buildNode(Nodes& nodes, const QueryPart& part, std::uint32_t depth);
   void buildSubtrees(ThreadTeam& team);
   void linkNodes();
 
