@@ -1,5 +1,7 @@
 // The C interface: exceptions become a status and a message.
 
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <functional>
@@ -14,18 +16,28 @@
 
 using broadmark::broadphase::Answer;
 using broadmark::broadphase::Boxes;
+using broadmark::broadphase::BoxQuery;
 using broadmark::broadphase::BroadPhase;
+using broadmark::broadphase::Cast;
+using broadmark::broadphase::CastHit;
 using broadmark::broadphase::Changes;
 using broadmark::broadphase::Filter;
+using broadmark::broadphase::Hits;
 using broadmark::broadphase::InstructionSet;
 using broadmark::broadphase::Method;
+using broadmark::broadphase::NearestQuery;
+using broadmark::broadphase::Neighbour;
 using broadmark::broadphase::Options;
 using broadmark::broadphase::Order;
 using broadmark::broadphase::Pair;
+using broadmark::broadphase::QueryResults;
 
 struct bm_broadphase {
   explicit bm_broadphase(const Options& options) : broad_phase(options) {}
   BroadPhase broad_phase;
+  QueryResults<std::uint32_t> bodies;
+  QueryResults<CastHit> hits;
+  QueryResults<Neighbour> neighbours;
 };
 
 namespace {
@@ -38,6 +50,17 @@ static_assert(BM_ORDER_ANY == static_cast<int>(Order::any));
 static_assert(BM_CHANGES_TRUSTED == static_cast<int>(Changes::trusted));
 static_assert(BM_ISA_AVX512 == static_cast<int>(InstructionSet::avx512));
 static_assert(BM_NO_TAG == Filter::kNoTag);
+static_assert(BM_HITS_ALL == static_cast<int>(Hits::all));
+static_assert(BM_ALL_LAYERS == broadmark::broadphase::kAllLayers);
+static_assert(sizeof(bm_box_query) == sizeof(BoxQuery));
+static_assert(sizeof(bm_cast_query) == sizeof(Cast) &&
+              offsetof(bm_cast_query, max_fraction) == offsetof(Cast, max_fraction));
+static_assert(sizeof(bm_nearest_query) == sizeof(NearestQuery) &&
+              offsetof(bm_nearest_query, max_distance) == offsetof(NearestQuery, max_distance));
+static_assert(sizeof(bm_hit) == sizeof(CastHit) &&
+              offsetof(bm_hit, body) == offsetof(CastHit, body));
+static_assert(sizeof(bm_neighbour) == sizeof(Neighbour) &&
+              offsetof(bm_neighbour, body) == offsetof(Neighbour, body));
 
 thread_local std::string last_error;
 
@@ -50,11 +73,10 @@ bm_status fail(bm_status status, const char* message) noexcept {
   return status;
 }
 
-template <class Call>
-bm_status guarded(Call call) noexcept {
+/// For the exception that is being handled. One function for all calls: it is long.
+[[gnu::cold, gnu::noinline]] bm_status failByException() noexcept {
   try {
-    call();
-    return BM_OK;
+    throw;
   } catch (const std::invalid_argument& error) {
     return fail(BM_INVALID_ARGUMENT, error.what());
   } catch (const std::length_error& error) {
@@ -67,6 +89,16 @@ bm_status guarded(Call call) noexcept {
     return fail(BM_FAILED, error.what());
   } catch (...) {
     return fail(BM_FAILED, "an exception that is no std::exception");
+  }
+}
+
+template <class Call>
+bm_status guarded(Call call) noexcept {
+  try {
+    call();
+    return BM_OK;
+  } catch (...) {
+    return failByException();
   }
 }
 
@@ -103,6 +135,19 @@ Options optionsOf(const bm_options& given) {
     };
   }
   return options;
+}
+
+/// Queries as the C++ interface has them.
+template <class Query, class CQuery>
+std::span<const Query> queriesOf(const CQuery* queries, size_t count) {
+  if (count > 0) deref(queries, "queries");
+  return {reinterpret_cast<const Query*>(queries), count};
+}
+
+template <class CResults, class T>
+void publish(const QueryResults<T>& found, CResults& results) {
+  results.starts = found.starts.data();
+  results.items = reinterpret_cast<decltype(results.items)>(found.items.data());
 }
 
 }  // namespace
@@ -161,6 +206,36 @@ bm_status bm_get_events(const bm_broadphase* broadphase, bm_pairs* began, bm_pai
     const BroadPhase& broad_phase = deref(broadphase, "broadphase").broad_phase;
     deref(began, "began") = pairsOf(broad_phase.began());
     deref(ended, "ended") = pairsOf(broad_phase.ended());
+  });
+}
+
+bm_status bm_overlapping(bm_broadphase* broadphase, const bm_box_query* queries, size_t count,
+                         bm_body_results* results) {
+  return guarded([&] {
+    bm_broadphase& object = deref(broadphase, "broadphase");
+    deref(results, "results");
+    object.broad_phase.overlapping(queriesOf<BoxQuery>(queries, count), object.bodies);
+    publish(object.bodies, *results);
+  });
+}
+
+bm_status bm_cast(bm_broadphase* broadphase, const bm_cast_query* casts, size_t count, int hits,
+                  bm_hit_results* results) {
+  return guarded([&] {
+    bm_broadphase& object = deref(broadphase, "broadphase");
+    deref(results, "results");
+    object.broad_phase.cast(queriesOf<Cast>(casts, count), static_cast<Hits>(hits), object.hits);
+    publish(object.hits, *results);
+  });
+}
+
+bm_status bm_nearest(bm_broadphase* broadphase, const bm_nearest_query* queries, size_t count,
+                     bm_neighbour_results* results) {
+  return guarded([&] {
+    bm_broadphase& object = deref(broadphase, "broadphase");
+    deref(results, "results");
+    object.broad_phase.nearest(queriesOf<NearestQuery>(queries, count), object.neighbours);
+    publish(object.neighbours, *results);
   });
 }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "algorithms/runs.h"
-#include "broadphase/worlds.h"
+#include "broadphase/query_oracle.h"
 #include "support/changing_worlds.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
@@ -145,7 +145,7 @@ TEST_P(SteadyState, AllocatesNothingWhileFiltersRest) {
   }
 }
 
-// The library for engines, with bodies that come and go, listed changes and saved states.
+// The library for engines, with bodies that come and go, listed changes, saved states and queries.
 TEST(SteadyStateOfTheLibrary, AllocatesNothing) {
   if (BROADMARK_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted here";
   constexpr std::size_t kBodies = 5000;
@@ -158,6 +158,13 @@ TEST(SteadyStateOfTheLibrary, AllocatesNothing) {
   std::vector<std::uint32_t> all(kBodies);
   std::iota(all.begin(), all.end(), 0U);
   std::vector<std::byte> state;
+  QueryBatches batches;
+  for (const bp::Box& box : frames[0]) {
+    if (box.min[0] > box.max[0] || batches.boxes.size() == 100) continue;
+    batches.boxes.push_back({box});
+    batches.casts.push_back({box, {1, 2, 3}});
+    batches.points.push_back({{box.min[0], box.min[1], box.min[2]}, 5});
+  }
   for (bp::Options options : allOptions()) {
     for (const int threads : {1, 2, 3}) {
       options.threads = threads;
@@ -169,7 +176,10 @@ TEST(SteadyStateOfTheLibrary, AllocatesNothing) {
       for (int round = 0; round <= 3; ++round) {
         before = allocations;
         for (const std::vector<bp::Box>& boxes : frames) object.update(boxes);
-        for (const std::vector<bp::Box>& boxes : frames) object.update(boxes, all);
+        for (const std::vector<bp::Box>& boxes : frames) {
+          object.update(boxes, all);
+          batches.run(object);
+        }
         object.save(state);
       }
       EXPECT_EQ(allocations - before, 0) << describe(options);

@@ -168,6 +168,66 @@ static void test_states(void) {
   bm_destroy(object);
 }
 
+static void test_queries(void) {
+  bm_broadphase* object = NULL;
+  bm_body_results bodies;
+  bm_hit_results hits;
+  bm_neighbour_results neighbours;
+  EXPECT(bm_create(NULL, &object) == BM_OK);
+  EXPECT(bm_overlapping(object, NULL, 0, &bodies) == BM_OK && bodies.starts[0] == 0);
+  move(6);
+  EXPECT(bm_set_filter(object, 7, 3, NULL) == BM_OK);
+  EXPECT(bm_update(object, view) == BM_OK);
+
+  static bm_box_query about[kBodies];
+  for (int i = 0; i < kBodies; ++i) {
+    about[i].box = boxes[i];
+    about[i].layers = i == 7 ? 1U << 3 : BM_ALL_LAYERS;
+  }
+  EXPECT(bm_overlapping(object, about, kBodies, &bodies) == BM_OK);
+  for (uint32_t i = 0; i < kBodies; ++i) {
+    size_t next = bodies.starts[i];
+    for (uint32_t body = 0; body < kBodies; ++body) {
+      if ((i == 7 && body != 7) || !overlap(&boxes[i], &boxes[body])) continue;
+      EXPECT(next < bodies.starts[i + 1] && bodies.items[next] == body);
+      ++next;
+    }
+    EXPECT(next == bodies.starts[i + 1]);
+  }
+
+  const bm_box_query wrong = {{{0, 0, 0}, {1, -1, 1}}, BM_ALL_LAYERS};
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, &wrong, 1, &bodies), "query 0: min");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, NULL, 1, &bodies), "queries: a null");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, about, 1, NULL), "results: a null");
+
+  /* Through an edge of body 9, from below all bodies. */
+  bm_cast_query ray = {{{0, 0, 0}, {0, 0, 0}}, {0, 0, 4}, INFINITY, BM_ALL_LAYERS};
+  for (int axis = 0; axis < 3; ++axis) {
+    ray.box.min[axis] = ray.box.max[axis] = axis == 2 ? -1 : boxes[9].min[axis];
+  }
+  EXPECT(bm_cast(object, &ray, 1, BM_HITS_ALL, &hits) == BM_OK);
+  int found = 0;
+  for (size_t i = 0; i < hits.starts[1]; ++i) {
+    EXPECT(i == 0 || hits.items[i - 1].fraction <= hits.items[i].fraction);
+    EXPECT(hits.items[i].fraction == (boxes[hits.items[i].body].min[2] + 1.0) / 4);
+    found += hits.items[i].body == 9;
+  }
+  EXPECT(found == 1);
+  const bm_hit first = hits.items[0];
+  EXPECT(bm_cast(object, &ray, 1, BM_HITS_CLOSEST, &hits) == BM_OK);
+  EXPECT(hits.starts[1] == 1 && hits.items[0].body == first.body);
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_cast(object, &ray, 1, 2, &hits), "hits: no value 2");
+  ray.direction[1] = NAN;
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_cast(object, &ray, 1, 0, &hits), "direction");
+
+  const bm_nearest_query point = {{-3, -4, 0}, kBodies + 1, INFINITY, 1U << 3}; /* body 7 */
+  EXPECT(bm_nearest(object, &point, 1, &neighbours) == BM_OK);
+  EXPECT(neighbours.starts[1] == 1 && neighbours.items[0].body == 7 &&
+         neighbours.items[0].distance >= 5);
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_nearest(NULL, &point, 1, &neighbours), "broadphase");
+  bm_destroy(object);
+}
+
 static void test_jobs(void) {
   static bm_box many[5000];
   int jobs = 0;
@@ -217,6 +277,7 @@ int main(void) {
   test_filters();
   test_changed();
   test_states();
+  test_queries();
   test_jobs();
   test_errors();
   printf("%s\n", failures == 0 ? "passed" : "FAILED");

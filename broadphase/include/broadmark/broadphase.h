@@ -56,7 +56,10 @@ enum { BM_ORDER_SORTED = 0, BM_ORDER_ANY = 1 };
 enum { BM_CHANGES_VERIFIED = 0, BM_CHANGES_TRUSTED = 1 };
 enum { BM_ISA_BEST = 0, BM_ISA_SCALAR, BM_ISA_SSE2, BM_ISA_NEON, BM_ISA_AVX2, BM_ISA_AVX512 };
 
+enum { BM_HITS_CLOSEST = 0, BM_HITS_ALL = 1 };
+
 #define BM_NO_TAG UINT32_C(0xFFFFFFFF)
+#define BM_ALL_LAYERS UINT32_C(0xFFFFFFFF)
 
 /* Calls job(context, i) exactly once for each i below `jobs`, in any order, at the same time or one
  * after another, and returns when all calls have returned. `user`: bm_options.user. */
@@ -97,6 +100,65 @@ bm_status bm_set_filter(bm_broadphase* broadphase, uint32_t body, uint32_t layer
 /* The answer of the last update; valid until the next one or bm_restore(). */
 bm_status bm_get_pairs(const bm_broadphase* broadphase, bm_pairs* pairs);
 bm_status bm_get_events(const bm_broadphase* broadphase, bm_pairs* began, bm_pairs* ended);
+
+/* Queries find bodies of the given layers: bit b for layer b. */
+typedef struct bm_box_query {
+  bm_box box;
+  uint32_t layers;
+} bm_box_query;
+
+/* A box that moves along `direction`, up to `max_fraction` times as far; INFINITY: no limit. A ray
+ * is the cast of a point: min = max. */
+typedef struct bm_cast_query {
+  bm_box box;
+  float direction[3];
+  float max_fraction;
+  uint32_t layers;
+} bm_cast_query;
+
+/* The `count` bodies nearest to a point, up to `max_distance` away; INFINITY: no limit. */
+typedef struct bm_nearest_query {
+  float point[3];
+  uint32_t count;
+  float max_distance;
+  uint32_t layers;
+} bm_nearest_query;
+
+/* The boxes begin to overlap when the cast's has moved by `fraction` times its direction. */
+typedef struct bm_hit {
+  double fraction;
+  uint32_t body;
+} bm_hit;
+
+typedef struct bm_neighbour {
+  double distance;
+  uint32_t body;
+} bm_neighbour;
+
+/* The answer to query i is items[starts[i]] to items[starts[i + 1] - 1]. Valid until the next call
+ * of the same function. */
+typedef struct bm_body_results {
+  const size_t* starts;
+  const uint32_t* items;
+} bm_body_results;
+
+typedef struct bm_hit_results {
+  const size_t* starts;
+  const bm_hit* items;
+} bm_hit_results;
+
+typedef struct bm_neighbour_results {
+  const size_t* starts;
+  const bm_neighbour* items;
+} bm_neighbour_results;
+
+/* Batches of queries about the boxes of the last update. */
+bm_status bm_overlapping(bm_broadphase* broadphase, const bm_box_query* queries, size_t count,
+                         bm_body_results* results);
+bm_status bm_cast(bm_broadphase* broadphase, const bm_cast_query* casts, size_t count, int hits,
+                  bm_hit_results* results);
+bm_status bm_nearest(bm_broadphase* broadphase, const bm_nearest_query* queries, size_t count,
+                     bm_neighbour_results* results);
 
 /* Writes the state to `bytes`, of `capacity` bytes, and its size to `size`, which alone is done if
  * that is more than `capacity`: BM_BUFFER_TOO_SMALL. */

@@ -132,14 +132,14 @@ struct Options {
 inline constexpr std::uint32_t kAllLayers = 0xFFFF'FFFF;
 
 /// Asks for the bodies whose boxes overlap a box.
-struct BoxQuery {
+struct [[gnu::may_alias]] BoxQuery {
   Box box;
   std::uint32_t layers = kAllLayers;
 };
 
 /// Asks for the bodies whose boxes are hit by a box that moves along `direction`, up to
 /// `max_fraction` times as far; infinity: no limit. A ray is the cast of a point: min = max.
-struct Cast {
+struct [[gnu::may_alias]] Cast {
   Box box;
   float direction[3];
   float max_fraction = 1;
@@ -148,7 +148,7 @@ struct Cast {
 
 /// The cast's box and the body's begin to overlap when the former has moved by `fraction` times its
 /// direction; 0 if they do at the start.
-struct CastHit {
+struct [[gnu::may_alias]] CastHit {
   double fraction;
   std::uint32_t body;
 
@@ -164,14 +164,14 @@ enum class Hits {
 
 /// Asks for the `count` bodies whose boxes are nearest to a point, up to `max_distance` away;
 /// infinity: no limit.
-struct NearestQuery {
+struct [[gnu::may_alias]] NearestQuery {
   float point[3];
   std::uint32_t count = 1;
   float max_distance = std::numeric_limits<float>::infinity();
   std::uint32_t layers = kAllLayers;
 };
 
-struct Neighbour {
+struct [[gnu::may_alias]] Neighbour {
   double distance;  ///< from the point to the body's box; 0 inside of it
   std::uint32_t body;
 
