@@ -51,7 +51,7 @@ Isa isaOf(InstructionSet set) {
   throw std::invalid_argument("instruction_set: not supported by this processor");
 }
 
-LayerMatrix matrixOf(const Options& options) {
+[[gnu::cold]] LayerMatrix matrixOf(const Options& options) {
   LayerMatrix matrix;
   for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
     for (std::size_t b = 0; b < LayerMatrix::kLayers; ++b) {
@@ -76,7 +76,7 @@ void checkChoice(Enum value, Enum last, const char* name) {
   }
 }
 
-Options checked(const Options& options) {
+[[gnu::cold]] Options checked(const Options& options) {
   constexpr int kMaxThreads = 1024;
   checkChoice(options.method, Method::columns, "method");
   checkChoice(options.answer, Answer::events, "answer");
@@ -177,7 +177,7 @@ class CheckedJobs {
 
 class BroadPhase::Implementation {
  public:
-  explicit Implementation(const Options& options)
+  [[gnu::cold]] explicit Implementation(const Options& options)
       : options_(checked(options)),
         isa_(isaOf(options.instruction_set)),
         matrix_(matrixOf(options)) {
@@ -218,14 +218,15 @@ class BroadPhase::Implementation {
   void checkChanged(const BoxReader& boxes, std::size_t count);
   void apply(const BoxReader& boxes, std::size_t count);
   void storeChanged(const BoxReader& boxes, std::size_t count);
-  void resizeSlots(std::size_t count);
-  void createInstance();
-  void createExecution();
+  // These are rare, and take less space so.
+  [[gnu::cold]] void resizeSlots(std::size_t count);
+  [[gnu::cold]] void createInstance();
+  [[gnu::cold]] void createExecution();
   void assign(PairRuns runs, PairArray& into, PairRun& run) const;
   void runFrame();
   void takeAnswer();
   void takeEvents(PairRuns began, PairRuns ended);
-  [[nodiscard]] PairArray initialPairs();
+  [[nodiscard, gnu::cold]] PairArray initialPairs();
   [[nodiscard]] std::size_t filterCount() const;
 
   Options options_;
@@ -563,47 +564,13 @@ void BroadPhase::Implementation::setFilter(Body body, const Filter& filter) {
 
 // Queries.
 
-namespace {
-
-[[noreturn, gnu::cold]] void refuse(std::size_t query, const std::string& fault) {
-  throw std::invalid_argument(numbered("query", query) + ": " + fault);
-}
-
-void check(std::size_t number, const Box& box) {
-  const Aabb checked = BoxReader(box.min, box.max, 0, 0).raw(0);
-  if (!isFiniteBox(checked)) refuse(number, faultOf(checked));
-}
-
-void check(std::size_t number, const float (&vector)[3], const char* name) {
-  for (const float x : vector) {
-    if (!std::isfinite(x)) refuse(number, std::string(name) + " is not finite");
-  }
-}
-
-void check(std::size_t number, float limit, const char* name) {
-  if (!(limit >= 0)) refuse(number, std::string(name) + " is negative or NaN");
-}
-
-void check(std::size_t number, const BoxQuery& query) { check(number, query.box); }
-void check(std::size_t number, const Cast& cast) {
-  check(number, cast.box);
-  check(number, cast.direction, "direction");
-  check(number, cast.max_fraction, "max_fraction");
-}
-void check(std::size_t number, const NearestQuery& query) {
-  check(number, query.point, "point");
-  check(number, query.max_distance, "max_distance");
-}
-
-}  // namespace
-
 /// By the function of QueryTree, which is given the queries, `results` and threads.
 template <class Query, class T, class Answer>
 void BroadPhase::Implementation::query(std::span<const Query> queries, QueryResults<T>& results,
                                        Answer answer) {
   const Use use(in_use_);
   if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
-  for (std::size_t i = 0; i < queries.size(); ++i) check(i, queries[i]);
+  checkQueries(queries);
   if (boxes_.empty() || execution_ == nullptr) {  // no body is present
     results.items.clear();
     results.starts.assign(queries.size() + 1, 0);

@@ -28,7 +28,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 
+#include "box_reader.h"
 #include "corner.h"
 
 namespace broadmark::broadphase {
@@ -568,6 +572,47 @@ void QueryTree::insert(Body body, const QueryWorld& world) {
 
 // Queries.
 
+namespace {
+
+[[noreturn, gnu::cold]] void refuse(std::size_t query, std::string_view fault) {
+  throw std::invalid_argument(
+      std::string("query ").append(std::to_string(query)).append(": ").append(fault));
+}
+
+void check(std::size_t number, const Box& box) {
+  const Aabb checked = BoxReader(box.min, box.max, 0, 0).raw(0);
+  if (!isFiniteBox(checked)) refuse(number, faultOf(checked));
+}
+
+void check(std::size_t number, const float (&vector)[3], std::string_view fault) {
+  for (const float x : vector) {
+    if (!std::isfinite(x)) refuse(number, fault);
+  }
+}
+
+void check(std::size_t number, float limit, std::string_view fault) {
+  if (!(limit >= 0)) refuse(number, fault);
+}
+
+}  // namespace
+
+void checkQueries(std::span<const BoxQuery> queries) {
+  for (std::size_t i = 0; i < queries.size(); ++i) check(i, queries[i].box);
+}
+void checkQueries(std::span<const Cast> casts) {
+  for (std::size_t i = 0; i < casts.size(); ++i) {
+    check(i, casts[i].box);
+    check(i, casts[i].direction, "direction is not finite");
+    check(i, casts[i].max_fraction, "max_fraction is negative or NaN");
+  }
+}
+void checkQueries(std::span<const NearestQuery> queries) {
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    check(i, queries[i].point, "point is not finite");
+    check(i, queries[i].max_distance, "max_distance is negative or NaN");
+  }
+}
+
 template <class Query, class T, class Answer>
 void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& results,
                           std::vector<T> Worker::*found, ThreadTeam& team, Answer answer) {
@@ -592,10 +637,10 @@ void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& resul
   for (int worker = 1; worker < workers; ++worker) {
     const std::vector<T>& items = workers_[static_cast<std::size_t>(worker)].*found;
     const Range range = share(queries.size(), workers, worker);
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      results.starts[i] += results.items.size();
-    }
-    results.items.insert(results.items.end(), items.begin(), items.end());
+    const std::size_t first = results.items.size();
+    for (std::size_t i = range.begin; i < range.end; ++i) results.starts[i] += first;
+    results.items.resize(first + items.size());
+    std::ranges::copy(items, results.items.begin() + static_cast<std::ptrdiff_t>(first));
   }
   results.starts[queries.size()] = results.items.size();
 }

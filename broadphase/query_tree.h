@@ -23,6 +23,11 @@ struct QueryWorld {
   const CollisionFilter& filter;
 };
 
+/// Throws std::invalid_argument if a query is not as BroadPhase requires.
+void checkQueries(std::span<const BoxQuery> queries);
+void checkQueries(std::span<const Cast> casts);
+void checkQueries(std::span<const NearestQuery> queries);
+
 /// A body while the tree is built.
 struct QueryItem {
   Aabb box;
@@ -43,7 +48,7 @@ class QueryTree {
   /// call builds.
   void refresh(const QueryWorld& world, ThreadTeam& team);
 
-  /// Queries are valid: see BroadPhase.
+  /// Answers to queries that checkQueries() accepts.
   void overlapping(std::span<const BoxQuery> queries, QueryResults<std::uint32_t>& results,
                    ThreadTeam& team);
   void cast(std::span<const Cast> casts, Hits hits, QueryResults<CastHit>& results,
