@@ -639,8 +639,7 @@ void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& resul
     const Range range = share(queries.size(), workers, worker);
     const std::size_t first = results.items.size();
     for (std::size_t i = range.begin; i < range.end; ++i) results.starts[i] += first;
-    results.items.resize(first + items.size());
-    std::ranges::copy(items, results.items.begin() + static_cast<std::ptrdiff_t>(first));
+    results.items.insert(results.items.end(), items.begin(), items.end());
   }
   results.starts[queries.size()] = results.items.size();
 }

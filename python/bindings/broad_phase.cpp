@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <broadmark/broadphase.hpp>
 #include <cmath>
@@ -39,6 +40,8 @@ using broadphase::Order;
 constexpr NameTable kMethods{{NamedValue{Method::tide, "tide"}, {Method::columns, "columns"}}};
 constexpr NameTable kAnswers{{NamedValue{Answer::pairs, "pairs"}, {Answer::events, "events"}}};
 constexpr NameTable kOrders{{NamedValue{Order::sorted, "sorted"}, {Order::any, "any"}}};
+constexpr NameTable kHits{
+    {NamedValue{broadphase::Hits::closest, "closest"}, {broadphase::Hits::all, "all"}}};
 constexpr NameTable kChanges{
     {NamedValue{Changes::verified, "verified"}, {Changes::trusted, "trusted"}}};
 constexpr NameTable kInstructionSets{{NamedValue{InstructionSet::best, "auto"},
@@ -65,6 +68,38 @@ float roundedUp(double number) {
 py::array_t<std::uint32_t> copied(std::span<const broadphase::Pair> pairs) {
   py::array_t<std::uint32_t> array({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
   if (!pairs.empty()) std::memcpy(array.mutable_data(), pairs.data(), pairs.size_bytes());
+  return array;
+}
+
+/// Rows of contiguous floats.
+using Floats = py::array_t<float, py::array::c_style>;
+
+std::span<const float> rowOf(const Floats& rows, std::size_t row) {
+  const std::size_t width =
+      static_cast<std::size_t>(rows.size() / std::max<py::ssize_t>(1, rows.shape(0)));
+  return {rows.data() + row * width, width};
+}
+
+broadphase::Box boxOf(std::span<const float> bounds) {
+  broadphase::Box box;
+  std::ranges::copy(bounds.first<3>(), box.min);
+  std::ranges::copy(bounds.last<3>(), box.max);
+  return box;
+}
+
+py::array_t<std::int64_t> startsOf(const std::vector<std::size_t>& starts) {
+  py::array_t<std::int64_t> array(static_cast<py::ssize_t>(starts.size()));
+  std::ranges::transform(starts, array.mutable_data(),
+                         [](std::size_t start) { return static_cast<std::int64_t>(start); });
+  return array;
+}
+
+/// A field of all items.
+template <class T, class Value>
+py::array_t<Value> fieldOf(const std::vector<T>& items, Value T::*field) {
+  py::array_t<Value> array(static_cast<py::ssize_t>(items.size()));
+  std::ranges::transform(items, array.mutable_data(),
+                         [field](const T& item) { return item.*field; });
   return array;
 }
 
@@ -118,6 +153,55 @@ class PythonBroadPhase {
     return broad_phase_.size();
   }
 
+  // Queries: a row of an array for each. Answers: where each one starts, the bodies, and their
+  // fractions or distances.
+
+  py::tuple overlapping(const Floats& boxes, std::uint32_t layers) {
+    std::vector<broadphase::BoxQuery> queries;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(boxes.shape(0)); ++i) {
+      queries.push_back({boxOf(rowOf(boxes, i)), layers});
+    }
+    broadphase::QueryResults<std::uint32_t> found;
+    run([&] { broad_phase_.overlapping(queries, found); });
+    py::array_t<std::uint32_t> bodies(static_cast<py::ssize_t>(found.items.size()));
+    std::ranges::copy(found.items, bodies.mutable_data());
+    return py::make_tuple(startsOf(found.starts), bodies);
+  }
+
+  py::tuple cast(const Floats& boxes, const Floats& directions, const Floats& max_fractions,
+                 const std::string& hits, std::uint32_t layers) {
+    std::vector<broadphase::Cast> casts;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(boxes.shape(0)); ++i) {
+      broadphase::Cast& cast = casts.emplace_back();
+      cast.box = boxOf(rowOf(boxes, i));
+      std::ranges::copy(rowOf(directions, i), cast.direction);
+      cast.max_fraction = rowOf(max_fractions, i)[0];
+      cast.layers = layers;
+    }
+    const broadphase::Hits wanted = valueOf(kHits, "hits", hits);
+    broadphase::QueryResults<broadphase::CastHit> found;
+    run([&] { broad_phase_.cast(casts, wanted, found); });
+    return py::make_tuple(startsOf(found.starts), fieldOf(found.items, &broadphase::CastHit::body),
+                          fieldOf(found.items, &broadphase::CastHit::fraction));
+  }
+
+  py::tuple nearest(const Floats& points, std::uint32_t count, const Floats& max_distances,
+                    std::uint32_t layers) {
+    std::vector<broadphase::NearestQuery> queries;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(points.shape(0)); ++i) {
+      broadphase::NearestQuery& query = queries.emplace_back();
+      std::ranges::copy(rowOf(points, i), query.point);
+      query.count = count;
+      query.max_distance = rowOf(max_distances, i)[0];
+      query.layers = layers;
+    }
+    broadphase::QueryResults<broadphase::Neighbour> found;
+    run([&] { broad_phase_.nearest(queries, found); });
+    return py::make_tuple(startsOf(found.starts),
+                          fieldOf(found.items, &broadphase::Neighbour::body),
+                          fieldOf(found.items, &broadphase::Neighbour::distance));
+  }
+
   py::bytes save() {
     const Use use(in_use_);
     broad_phase_.save(state_);
@@ -151,6 +235,14 @@ class PythonBroadPhase {
     bool& in_use_;
   };
 
+  /// Without the global lock.
+  template <class Call>
+  void run(Call call) {
+    const Use use(in_use_);
+    const py::gil_scoped_release release;
+    call();
+  }
+
   broadphase::BroadPhase broad_phase_;
   std::vector<std::byte> state_;
   bool in_use_ = false;
@@ -181,6 +273,9 @@ void defineBroadPhase(py::module_& module) {
       .def("pairs", &PythonBroadPhase::pairs)
       .def("began", &PythonBroadPhase::began)
       .def("ended", &PythonBroadPhase::ended)
+      .def("overlapping", &PythonBroadPhase::overlapping)
+      .def("cast", &PythonBroadPhase::cast)
+      .def("nearest", &PythonBroadPhase::nearest)
       .def("size", &PythonBroadPhase::size)
       .def("save", &PythonBroadPhase::save)
       .def("restore", &PythonBroadPhase::restore);

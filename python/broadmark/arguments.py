@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 import os
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -86,6 +87,47 @@ def _require_valid(boxes: npt.NDArray[Any], may_be_absent: bool) -> None:
     raise InputError(
         f"boxes: body {body} has a min {boxes[body, 0]} greater than its max {boxes[body, 1]}"
     )
+
+
+def as_vectors(name: str, vectors: Any) -> Floats:
+    """Points or directions as a contiguous array (n, 3) of finite 32-bit floats."""
+    array = _as_array(name, vectors)
+    if array.shape == (0,):
+        array = np.empty((0, 3), np.float32)
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iuf":
+        raise InputError(
+            f"{name}: of shape {array.shape} and type {array.dtype}, expected numbers (n, 3)"
+        )
+    with np.errstate(over="ignore"):
+        rounded = np.ascontiguousarray(array, np.float32)
+    invalid = ~np.isfinite(rounded).all(1)
+    if invalid.any():
+        raise InputError(
+            f"{name}: row {int(invalid.argmax())} has a number that is not a finite one of 32 bits"
+        )
+    return rounded
+
+
+def as_limits(name: str, limits: Any, count: int) -> Floats:
+    """A limit, or one for each of `count` queries, as an array (count,); inf: none."""
+    array = _as_array(name, limits)
+    if array.shape not in ((), (count,)) or array.dtype.kind not in "iuf":
+        raise InputError(f"{name}: expected a number, or an array of {count}")
+    if not (array >= 0).all():  # false for NaN
+        raise InputError(f"{name}: negative, or not a number")
+    with np.errstate(over="ignore"):
+        return np.array(np.broadcast_to(array, (count,)), np.float32)
+
+
+def as_layers(layers: Iterable[int] | None) -> int:
+    """Bit b: layer b is among the layers; None for all."""
+    if layers is None:
+        return 0xFFFF_FFFF
+    try:
+        bits = [1 << as_integer("layer", layer, 0, 31) for layer in layers]
+    except TypeError:
+        raise InputError(f"layers {layers!r}: expected a list of numbers") from None
+    return sum(set(bits))
 
 
 def as_integer(name: str, value: Any, low: int, high: int) -> int:

@@ -11,16 +11,22 @@ import numpy.typing as npt
 from broadmark.arguments import (
     as_bodies,
     as_boxes,
+    as_boxes,
     as_collisions,
     as_floats,
     as_integer,
+    as_layers,
+    as_limits,
     as_threads,
+    as_vectors,
 )
 from broadmark.errors import InputError
 from broadmark.native import native
 from broadmark.recording2 import LAYERS, NO_TAG
 
 Pairs = npt.NDArray[np.uint32]
+Bodies = npt.NDArray[np.uint32]
+Starts = npt.NDArray[np.int64]
 
 
 class BroadPhase:
@@ -118,6 +124,72 @@ class BroadPhase:
     def _answer(find: Any) -> Pairs:
         pairs: Pairs = find()
         return pairs
+
+    # Queries: about the boxes and layers of the last update or restore, with the margin. All release
+    # the GIL.
+
+    def overlapping(
+        self, boxes: Any, *, layers: Iterable[int] | None = None
+    ) -> tuple[Starts, Bodies]:
+        """The bodies whose boxes overlap each of `boxes`, ascending: (starts, bodies). Answer i is
+        `bodies[starts[i]:starts[i + 1]]`.
+
+        `boxes` as in `update`; none may be empty. `layers`: only bodies of these; None for all.
+        """
+        array = np.ascontiguousarray(as_boxes(boxes))
+        found: tuple[Starts, Bodies] = self._native.overlapping(array, as_layers(layers))
+        return found
+
+    def cast(
+        self,
+        origins: Any,
+        directions: Any,
+        *,
+        hits: Literal["closest", "all"] = "closest",
+        max_fraction: Any = 1,
+        layers: Iterable[int] | None = None,
+    ) -> tuple[Starts, Bodies, npt.NDArray[np.float64]]:
+        """The bodies hit by rays, or by boxes that move: (starts, bodies, fractions), as for
+        `overlapping`. Ascending by fraction, then body; of each ray the closest hit, or all.
+
+        `origins`: points (n, 3), or boxes as in `update`. `directions` (n, 3): a body that is hit
+        when the origin has moved by half of it has the fraction 0.5; by all of it, 1, which is the
+        default of `max_fraction` (a number, or one for each; inf: no limit). Points and directions
+        are rounded to 32-bit floats. No hit is missed; what misses within rounding is a hit.
+        """
+        points = np.asanyarray(origins)
+        if points.ndim == 2 and points.shape[1] == 3:
+            points = as_vectors("origins", origins)
+            boxes = np.stack([points, points], axis=1)
+        else:
+            boxes = np.ascontiguousarray(as_boxes(origins))
+        vectors = as_vectors("directions", directions)
+        if len(vectors) != len(boxes):
+            raise InputError(f"directions: {len(vectors)}, but {len(boxes)} origins")
+        limits = as_limits("max_fraction", max_fraction, len(boxes))
+        found: tuple[Starts, Bodies, npt.NDArray[np.float64]] = self._native.cast(
+            boxes, vectors, limits, str(hits), as_layers(layers)
+        )
+        return found
+
+    def nearest(
+        self,
+        points: Any,
+        count: int = 1,
+        *,
+        max_distance: Any = np.inf,
+        layers: Iterable[int] | None = None,
+    ) -> tuple[Starts, Bodies, npt.NDArray[np.float64]]:
+        """The `count` bodies nearest to each of `points` (n, 3): (starts, bodies, distances), as for
+        `overlapping`. Ascending by distance to the body's box, then body. Fewer, if there are not so
+        many, up to `max_distance` away (a number, or one for each)."""
+        vectors = as_vectors("points", points)
+        limits = as_limits("max_distance", max_distance, len(vectors))
+        count = as_integer("count", count, 0, NO_TAG)
+        found: tuple[Starts, Bodies, npt.NDArray[np.float64]] = self._native.nearest(
+            vectors, count, limits, as_layers(layers)
+        )
+        return found
 
     @property
     def size(self) -> int:

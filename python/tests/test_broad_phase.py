@@ -274,6 +274,121 @@ def test_updates_release_the_gil() -> None:
     assert len(broad_phase.pairs()) > 0
 
 
+def hits_of(world: World, box: Any, direction: Any) -> dict[int, float]:
+    """By brute force: the fraction of each body that a moving box hits, up to 1."""
+    low, high = box
+    found = {}
+    for body, (body_low, body_high) in enumerate(world.boxes.astype(float)):
+        enters, leaves = 0.0, 1.0 if np.isfinite(body_low).all() else -1.0
+        for axis in range(3):
+            near, far = body_low[axis] - high[axis], body_high[axis] - low[axis]
+            if direction[axis] == 0:
+                leaves = leaves if near <= 0 <= far else -1.0
+                continue
+            times = sorted((near / direction[axis], far / direction[axis]))
+            enters, leaves = max(enters, times[0]), min(leaves, times[1])
+        if enters <= leaves:
+            found[body] = enters
+    return found
+
+
+def test_queries_are_answered_as_by_brute_force() -> None:
+    world = World(8)
+    broad_phase = BroadPhase()
+    generator = np.random.default_rng(9)
+    answers = 0
+    for _ in frames_of(world, 10):
+        broad_phase.update(world.boxes)
+        # Eighths, and directions of which all times are exact.
+        low = np.round(generator.uniform(-1, 9, (20, 3)) * 8) / 8
+        boxes = np.stack([low, low + generator.integers(0, 2, (20, 3))], axis=1)
+        starts, bodies = broad_phase.overlapping(boxes)
+        assert starts.dtype == np.int64 and bodies.dtype == np.uint32 and len(starts) == 21
+        for i, (box_low, box_high) in enumerate(boxes):
+            inside = (world.boxes[:, 0] <= box_high) & (world.boxes[:, 1] >= box_low)
+            expected = np.flatnonzero(inside.all(1)).tolist()
+            assert bodies[starts[i] : starts[i + 1]].tolist() == expected
+
+        directions = generator.choice([-4.0, 0.0, 8.0], (20, 3))
+        for origins, corners in ((boxes, boxes), (low, np.stack([low, low], axis=1))):
+            starts, bodies, fractions = broad_phase.cast(origins, directions, hits="all")
+            first, closest, _ = broad_phase.cast(origins, directions)
+            for i in range(20):
+                hits = hits_of(world, corners[i], directions[i])
+                expected = sorted(hits, key=lambda body: (hits[body], body))
+                found = slice(starts[i], starts[i + 1])
+                assert bodies[found].tolist() == expected
+                assert fractions[found].tolist() == [hits[body] for body in expected]
+                assert closest[first[i] : first[i + 1]].tolist() == expected[:1]
+                answers += len(expected)
+
+        starts, bodies, distances = broad_phase.nearest(low, 4)
+        present = np.isfinite(world.boxes[:, 0, 0])
+        for i, point in enumerate(low):
+            with np.errstate(invalid="ignore"):
+                gap = np.maximum(
+                    0, np.maximum(world.boxes[:, 0] - point, point - world.boxes[:, 1])
+                )
+                squares = np.where(present, (gap.astype(float) ** 2).sum(1), np.inf)
+            expected = np.argsort(squares, kind="stable")[: min(4, present.sum())]
+            found = slice(starts[i], starts[i + 1])
+            assert bodies[found].tolist() == expected.tolist()
+            np.testing.assert_allclose(distances[found], np.sqrt(squares[expected]))
+    assert answers > 500
+
+
+def test_queries_have_limits_and_layers() -> None:
+    broad_phase = BroadPhase(margin=0.5)
+    broad_phase.set_filter(1, 4)
+    broad_phase.update([[0, 0, 0, 1, 1, 1], [4, 0, 0, 5, 1, 1]])
+    assert broad_phase.overlapping([[0, 0, 0, 9, 9, 9]])[1].tolist() == [0, 1]
+    assert broad_phase.overlapping([[0, 0, 0, 9, 9, 9]], layers=[4, 5])[1].tolist() == [1]
+    assert broad_phase.overlapping([[0, 0, 0, 9, 9, 9]], layers=[])[0].tolist() == [0, 0]
+    rays = [[-1, 0, 0]] * 3, [[2, 0, 0]] * 3
+    starts, bodies, fractions = broad_phase.cast(
+        *rays, max_fraction=[0.125, 0.25, np.inf], hits="all"
+    )
+    assert starts.tolist() == [0, 0, 1, 3]
+    assert bodies.tolist() == [0, 0, 1]
+    assert fractions.tolist() == [0.25, 0.25, 2.25]
+    _, bodies, distances = broad_phase.nearest([[7, 0, 0]], 9, max_distance=2)
+    assert (bodies.tolist(), distances.tolist()) == ([1], [1.5])
+    nothing: list[Any] = [
+        *broad_phase.overlapping([]),
+        *broad_phase.cast([], []),
+        *broad_phase.nearest([]),
+    ]
+    assert [array.tolist() for array in nothing] == [[0], [], [0], [], [], [0], [], []]
+
+
+INVALID_QUERIES: list[tuple[str, tuple[Any, ...], dict[str, Any], str]] = [
+    ("overlapping", ([[0, 0, 0, 1, 1]],), {}, "boxes: of shape"),
+    ("overlapping", (EMPTY_BOX[None],), {}, "boxes: body 0 has a coordinate"),
+    ("overlapping", ([[0] * 6],), {"layers": [32]}, "layer 32: expected an integer from 0 to 31"),
+    ("overlapping", ([[0] * 6],), {"layers": 3}, "layers 3: expected a list of numbers"),
+    ("cast", ([[0, 0, 0]], [[0, 0]]), {}, r"directions: of shape \(1, 2\)"),
+    ("cast", ([[0, 0, 0]], [[0, 0, 1e39]]), {}, "directions: row 0 has a number"),
+    ("cast", ([[0, 0, 0]], []), {}, "directions: 0, but 1 origins"),
+    ("cast", ([[0, 0, np.nan]], [[1, 0, 0]]), {}, "origins: row 0 has a number"),
+    ("cast", ([[0, 0, 0]], [[1, 0, 0]]), {"hits": "some"}, "unknown hits 'some'"),
+    ("cast", ([[0, 0, 0]], [[1, 0, 0]]), {"max_fraction": -1}, "max_fraction: negative"),
+    ("cast", ([[0, 0, 0]], [[1, 0, 0]]), {"max_fraction": [1, 2]}, "or an array of 1"),
+    ("nearest", ([0, 0, 0],), {}, r"points: of shape \(3,\)"),
+    ("nearest", ([[0, 0, 0]], -1), {}, "count -1: expected an integer"),
+    ("nearest", ([[0, 0, 0]],), {"max_distance": np.nan}, "max_distance: negative, or not"),
+]
+
+
+@pytest.mark.parametrize(("query", "arguments", "options", "message"), INVALID_QUERIES)
+def test_invalid_queries_are_rejected(
+    query: str, arguments: tuple[Any, ...], options: dict[str, Any], message: str
+) -> None:
+    broad_phase = BroadPhase()
+    broad_phase.update(np.zeros((2, 6)))
+    with pytest.raises(broadmark.InputError, match=message):
+        getattr(broad_phase, query)(*arguments, **options)
+
+
 INVALID_OPTIONS: list[tuple[dict[str, Any], str]] = [
     ({"method": "tides"}, "unknown method 'tides'; did you mean 'tide'?"),
     ({"answer": "event"}, "unknown answer 'event'; did you mean 'events'?"),
