@@ -1,12 +1,12 @@
-// Any calls of the broad-phase library, by any bytes: its answers are right, a state is the same
-// once restored, and what is refused changes nothing.
+// Any calls of the broad-phase library, by any bytes: its answers and those to queries are right, a
+// state is the same once restored, and what is refused changes nothing.
 
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
-#include "broadphase/worlds.h"
+#include "broadphase/query_oracle.h"
 
 namespace {
 
@@ -42,7 +42,7 @@ class Calls {
   }
 
   void call() {
-    switch (next() % 8) {
+    switch (next() % 9) {
       case 0:
         boxes_.resize(next() % 40, kEmptyBox);
         break;
@@ -66,6 +66,9 @@ class Calls {
         break;
       case 6:
         refuse();
+        break;
+      case 7:
+        query();
         break;
       default:
         update();
@@ -107,6 +110,25 @@ class Calls {
   [[nodiscard]] PairList oracle() const {
     return bruteForcePairs(known_,
                            {known_groups_, LayerMatrix::all().set(0, 1, false).set(2, 2, false)});
+  }
+
+  /// About the last update, though other boxes and filters may have been prepared since.
+  void query() {
+    const auto coordinate = [&] { return static_cast<float>(next() % 64) / 4 - 4; };
+    QueryBatches batches;
+    for (unsigned i = next() % 4; i-- > 0;) {
+      const std::vector<bp::Box> boxes = publicBoxes({anyBox(), anyBox()});
+      const std::uint32_t layers = next();
+      batches.boxes.push_back({boxes[0], layers});
+      batches.casts.push_back({.box = boxes[1], .layers = layers});
+      for (float& x : batches.casts.back().direction) x = coordinate();
+      batches.points.push_back({{}, next(), coordinate() + 4, layers});
+      for (float& x : batches.points.back().point) x = coordinate();
+    }
+    batches.run(object_);
+    QueryOracle oracle{known_};
+    for (const BodyGroups& groups : known_groups_) oracle.layers.push_back(groups.layer);
+    require(batches.fault(oracle).empty());
   }
 
   void saveOrRestore() {
