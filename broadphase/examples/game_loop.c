@@ -1,4 +1,4 @@
-/* The C interface: balls in a box, saved and rolled back as a networked game does. */
+/* The C interface: balls in a box, saved and rolled back as a networked game does; and a query. */
 
 #include <broadmark/broadphase.h>
 #include <math.h>
@@ -75,6 +75,14 @@ int main(void) {
   memcpy(balls, saved_balls, sizeof(balls));
   pairs = play(broadphase, balls, 8);
   if (memcmp(expected, pairs.pairs, pairs.count * sizeof(bm_pair)) != 0) return 1;
+
+  /* The three balls nearest to a corner. */
+  const bm_nearest_query corner = {{0, 0, 0}, 3, INFINITY, BM_ALL_LAYERS};
+  bm_neighbour_results nearest;
+  check(bm_nearest(broadphase, &corner, 1, &nearest));
+  for (size_t i = 0; i < nearest.starts[1]; ++i) {
+    printf("ball %u: %.2f away\n", (unsigned)nearest.items[i].body, nearest.items[i].distance);
+  }
 
   balls[7].box.min[1] = NAN;
   const bm_boxes boxes = {balls[0].box.min, balls[0].box.max, BALLS, sizeof(ball)};

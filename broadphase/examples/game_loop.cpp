@@ -1,5 +1,5 @@
-// A game loop: crates that fly through a level of pillars, come and go, and are told when they
-// begin and cease to touch something.
+// A game loop: crates that fly through a level of pillars, come and go, are told when they begin
+// and cease to touch something, and are shot at.
 
 #include <broadmark/broadphase.hpp>
 #include <cstdint>
@@ -39,7 +39,8 @@ int main() {
     speeds.push_back(body % 3 == 0 ? 0.0F : anywhere() / 100);  // some are at rest
   }
 
-  std::uint64_t begun = 0, over = 0;
+  std::uint64_t begun = 0, over = 0, shot = 0;
+  bp::QueryResults<bp::CastHit> hits;
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     for (std::uint32_t body = kPillars; body < boxes.size(); ++body) {
       if (boxes[body].min[0] > boxes[body].max[0]) {  // a slot that is free
@@ -54,10 +55,17 @@ int main() {
     broad_phase.update(boxes);  // finds out by itself what has changed
     for (const auto [a, b] : broad_phase.began()) ++contacts[a], ++contacts[b], ++begun;
     for (const auto [a, b] : broad_phase.ended()) --contacts[a], --contacts[b], ++over;
+
+    // Two shots from the middle of the level: what does each hit first?
+    const bp::Box gun = {{52.5F, 10, 52.5F}, {52.5F, 10, 52.5F}};
+    const bp::Cast shots[] = {{gun, {60, 0, anywhere() - 50}}, {gun, {-60, 0, anywhere() - 50}}};
+    broad_phase.cast(shots, bp::Hits::closest, hits);
+    for (const bp::CastHit& hit : hits.items) shot += hit.body >= kPillars ? 1 : 0;
   }
   std::uint64_t touching = 0;
   for (const std::uint32_t count : contacts) touching += count;
-  std::printf("%llu contacts began, %llu ended\n", static_cast<unsigned long long>(begun),
-              static_cast<unsigned long long>(over));
+  std::printf("%llu contacts began, %llu ended; %llu crates shot\n",
+              static_cast<unsigned long long>(begun), static_cast<unsigned long long>(over),
+              static_cast<unsigned long long>(shot));
   return touching == 2 * (begun - over) && begun > 0 ? 0 : 1;
 }
