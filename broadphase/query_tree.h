@@ -14,6 +14,7 @@
 #include "broadmark/large_array.h"
 #include "broadmark/range.h"
 #include "query_kernels.h"
+#include "query_parts.h"
 
 namespace broadmark::broadphase {
 
@@ -27,13 +28,6 @@ struct QueryWorld {
 void checkQueries(std::span<const BoxQuery> queries);
 void checkQueries(std::span<const Cast> casts);
 void checkQueries(std::span<const NearestQuery> queries);
-
-/// A body while the tree is built.
-struct QueryItem {
-  Aabb box;
-  std::uint32_t body;
-};
-struct QueryPart;
 
 class QueryTree {
  public:
