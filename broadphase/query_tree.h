@@ -64,10 +64,10 @@ class QueryTree {
     float bounds[6];
     std::uint32_t layers;
   };
-  /// What one worker needs.
+  /// The memory of one worker.
   struct Worker {
     Nodes nodes;                       ///< of a subtree
-    std::vector<NodeIndex> postponed;  ///< nodes whose parents are another worker's
+    std::vector<NodeIndex> postponed;  ///< nodes with parents of another worker
     std::int64_t loosened = 0;
     std::vector<std::uint32_t> bodies;  ///< answers of a batch
     std::vector<CastHit> hits;

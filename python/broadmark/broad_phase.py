@@ -131,7 +131,7 @@ class BroadPhase:
     def overlapping(
         self, boxes: Any, *, layers: Iterable[int] | None = None
     ) -> tuple[Starts, Bodies]:
-        """The bodies whose boxes overlap each of `boxes`, ascending: (starts, bodies). Answer i is
+        """The bodies that overlap each of `boxes`, ascending: (starts, bodies). Answer i is
         `bodies[starts[i]:starts[i + 1]]`.
 
         `boxes` as in `update`; none may be empty. `layers`: only bodies of these; None for all.

@@ -140,7 +140,7 @@ TEST(BroadphaseQueries, AreRightOnAnyThreads) {
 // Bodies appear, vanish and teleport, few and many of them; layers change, states are restored.
 TEST(BroadphaseQueries, FollowAChangingWorld) {
   for (bp::Options options : allOptions()) {
-    for (const int rate : {1, 2, 40, 400}) {  // one body in so many changes
+    for (const int rate : {1, 2, 40, 400}) {  // one in `rate` bodies changes
       bp::BroadPhase object(options);
       QueryOracle oracle;
       Random random(3, static_cast<std::uint32_t>(rate));
