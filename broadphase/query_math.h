@@ -28,10 +28,9 @@ struct CastAxis {
   CastAxis(float min, float max, float direction)
       : near_origin(direction < 0 ? min : max),
         far_origin(direction < 0 ? max : min),
-        inverse(1 / static_cast<double>(direction)),
+        inverse(direction == 0 ? 0x1p600 : 1 / static_cast<double>(direction)),
         backwards(direction < 0) {
     if (direction != 0) return;
-    inverse = 0x1p600;
     const double size = min < 0 ? -far_origin : far_origin;
     far_origin -= largerOf(size * 0x1p-50, 0x1p-200);  // above the next lower float
   }

@@ -5,7 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "broadphase/worlds.h"
