@@ -18,7 +18,8 @@
 #include "broadmark/broad_phase.h"
 #include "broadmark/large_array.h"
 #include "columns.h"
-#include "query_tree.h"
+#include "queries/query_tree.h"
+#include "query_checks.h"
 #include "sorted_pairs.h"
 #include "tide.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "broadphase/worlds.h"
-#include "query_math.h"
+#include "queries/query_math.h"
 
 namespace broadmark::tests {
 

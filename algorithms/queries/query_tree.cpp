@@ -22,12 +22,12 @@
 // Papers: I. Wald, C. Benthin, S. Boulos, "Getting Rid of Packets", 2008 (wide nodes); I. Wald, "On
 // fast Construction of SAH-based Bounding Volume Hierarchies", 2007 (bins).
 
-#include "query_tree.h"
+#include "queries/query_tree.h"
 
 #include <algorithm>
 #include <array>
 
-#include "query_parts.h"
+#include "queries/query_parts.h"
 
 namespace broadmark::broadphase {
 namespace {

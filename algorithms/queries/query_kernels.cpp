@@ -1,8 +1,8 @@
-#include "query_kernels.h"
+#include "queries/query_kernels.h"
 
 #include "prefetch.h"
 
-#define BROADMARK_KERNELS "query_kernels.inl"
+#define BROADMARK_KERNELS "queries/query_kernels.inl"
 #include "simd/for_each_isa.inl"
 
 namespace broadmark::broadphase {

@@ -13,8 +13,8 @@
 #include "broadmark/execution.h"
 #include "broadmark/large_array.h"
 #include "broadmark/range.h"
-#include "query_kernels.h"
-#include "query_parts.h"
+#include "queries/query_kernels.h"
+#include "queries/query_parts.h"
 
 namespace broadmark::broadphase {
 
@@ -23,11 +23,6 @@ struct QueryWorld {
   std::span<const Aabb> boxes;  ///< by body; kEmptyBox: absent
   const CollisionFilter& filter;
 };
-
-/// Throws std::invalid_argument if a query is not as BroadPhase requires.
-void checkQueries(std::span<const BoxQuery> queries);
-void checkQueries(std::span<const Cast> casts);
-void checkQueries(std::span<const NearestQuery> queries);
 
 class QueryTree {
  public:
@@ -42,7 +37,7 @@ class QueryTree {
   /// call builds.
   void refresh(const QueryWorld& world, ThreadTeam& team);
 
-  /// Answers to queries that checkQueries() accepts.
+  /// Answers to queries as BroadPhase requires them.
   void overlapping(std::span<const BoxQuery> queries, QueryResults<std::uint32_t>& results,
                    ThreadTeam& team);
   void cast(std::span<const Cast> casts, Hits hits, QueryResults<CastHit>& results,

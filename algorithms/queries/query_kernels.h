@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "broadmark/execution.h"
-#include "query_math.h"
+#include "queries/query_math.h"
 
 namespace broadmark::broadphase {
 

@@ -1,4 +1,4 @@
-#include "query_parts.h"
+#include "queries/query_parts.h"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 
 #include "broadmark/aabb.h"
 #include "corner.h"
-#include "query_kernels.h"
+#include "queries/query_kernels.h"
 
 namespace broadmark::broadphase {
 
