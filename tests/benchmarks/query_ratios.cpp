@@ -1,5 +1,5 @@
 // Queries of the broad-phase library beside those of other libraries' trees, on the same boxes: one
-// thread, nanoseconds a query, with targets. Contestants alternate, batch by batch.
+// thread, nanoseconds a query. Contestants alternate, batch by batch.
 //
 //   query_ratios [ROUNDS [BODIES...]]
 
