@@ -18,8 +18,12 @@
 
 #if BROADMARK_BOOST
 #define BOOST_ALLOW_DEPRECATED_HEADERS  // suppresses Boost's own notes
-#include <boost/geometry.hpp>
+#include <boost/geometry/algorithms/covered_by.hpp>
+#include <boost/geometry/core/cs.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 #endif
 #if BROADMARK_EMBREE
@@ -208,6 +212,16 @@ void addBoost(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
 // Embree: a user geometry of boxes, built by the surface area heuristic.
 
 #if BROADMARK_EMBREE
+void intersect(RTCScene scene, RTCRayHit& rayhit) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &rayhit);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &rayhit);
+#endif
+}
+
 void addEmbree(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
   const std::shared_ptr<RTCDeviceTy> device(rtcNewDevice("threads=1"), rtcReleaseDevice);
   const std::shared_ptr<RTCSceneTy> scene(rtcNewScene(device.get()), rtcReleaseScene);
@@ -247,8 +261,6 @@ void addEmbree(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
   rtcCommitScene(scene.get());
   all.push_back({"rays, closest", "Embree", [=, scene = scene, kept = kept](const Batch& batch) {
                    std::size_t found = 0;
-                   RTCIntersectContext context;
-                   rtcInitIntersectContext(&context);
                    for (const bp::Cast& cast : batch.rays) {
                      RTCRayHit rayhit{};
                      rayhit.ray.org_x = cast.box.min[0];
@@ -260,7 +272,7 @@ void addEmbree(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
                      rayhit.ray.tfar = 1;
                      rayhit.ray.mask = ~0U;
                      rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-                     rtcIntersect1(scene.get(), &context, &rayhit);
+                     intersect(scene.get(), rayhit);
                      found += rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
                    }
                    return static_cast<double>(found);
