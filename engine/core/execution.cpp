@@ -98,7 +98,8 @@ std::vector<Isa> supportedIsas() {
 
 Isa bestIsa() { return supportedIsas().back(); }
 
-ThreadTeam::ThreadTeam(int size) : size_(std::max(size, 1)) {
+ThreadTeam::ThreadTeam(int size)
+    : size_(std::max(size, 1)), signals_(static_cast<std::size_t>(size_)) {
   std::vector<int> usable = usableCores();
   if (std::cmp_less_equal(size, usable.size())) {
     spins_ = kSpins;
@@ -146,7 +147,7 @@ void ThreadTeam::avoidCallerCore() {
 
 void ThreadTeam::stop() {
   stopping_.store(true);
-  publish(generation_ + 1);
+  announceJob(static_cast<int>(threads_.size()) + 1);
   for (std::thread& thread : threads_) thread.join();
 }
 
@@ -158,39 +159,46 @@ void ThreadTeam::runJob(int worker) {
   }
 }
 
-void ThreadTeam::publish(unsigned generation) {
-  generation_.store(generation, std::memory_order_release);
-  generation_.notify_all();
+void ThreadTeam::announceJob(int workers) {
+  for (int worker = 1; worker < workers; ++worker) {
+    std::atomic<unsigned>& generation = signals_[static_cast<std::size_t>(worker)].generation;
+    generation.store((generation.load(std::memory_order_relaxed) | 1U) + 1,
+                     std::memory_order_release);
+    generation.notify_one();
+  }
 }
 
-void ThreadTeam::wake() {
-  if (threads_.empty() || spins_ == 0) return;
+void ThreadTeam::wake(int workers) {
+  if (threads_.empty() || spins_ == 0 || workers < 2) return;
   avoidCallerCore();
-  publish(generation_ | 1U);
+  for (int worker = 1; worker < workers; ++worker) {
+    std::atomic<unsigned>& generation = signals_[static_cast<std::size_t>(worker)].generation;
+    generation.store(generation.load(std::memory_order_relaxed) | 1U, std::memory_order_release);
+    generation.notify_one();
+  }
 }
 
-void ThreadTeam::start(Job job) {
+void ThreadTeam::start(int workers, Job job) {
+  if (workers == 1) return job.call(job.context, 0);
   job_ = job;
   if (parallel_for_) {
-    parallel_for_(size_, [this](int worker) { runJob(worker); });
-    if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
-    return;
-  }
-  busy_.store(size() - 1, std::memory_order_relaxed);
-  if (!threads_.empty()) {
+    parallel_for_(workers, [this](int worker) { runJob(worker); });
+  } else {
+    busy_.store(workers - 1, std::memory_order_relaxed);
     avoidCallerCore();
-    publish((generation_ | 1U) + 1);
+    announceJob(workers);
+    runJob(0);
+    const int spins = spins_ > 0 ? kHotSpinCount : 0;  // the wait is short, a wake-up long
+    for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins);
   }
-  runJob(0);
-  const int spins = spins_ > 0 ? kHotSpinCount : 0;  // the wait is short, a wake-up long
-  for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadTeam::workerLoop(int worker) {
+  const std::atomic<unsigned>& generation = signals_[static_cast<std::size_t>(worker)].generation;
   for (unsigned seen = 0;;) {
     const bool is_awake = (seen & 1U) != 0;
-    seen = awaitChange(generation_, seen, is_awake ? kHotSpinCount : spins_);
+    seen = awaitChange(generation, seen, is_awake ? kHotSpinCount : spins_);
     if (stopping_.load()) return;
     if ((seen & 1U) != 0) continue;
     runJob(worker);

@@ -91,6 +91,29 @@ TEST(ThreadTeam, RunsOnceAWakeUp) {
   }
 }
 
+// Others sleep on, and miss no later job.
+TEST(ThreadTeam, RunsOnSomeOfItsWorkers) {
+  ThreadTeam team(5);
+  std::vector<int> counts(5);
+  std::vector<int> expected(5);
+  for (int round = 0; round < (kSanitized ? 200 : 2000); ++round) {
+    const int workers = 1 + round * 7 % 5;
+    if (round % 3 == 0) team.wake(1 + round % 5);
+    team.runOn(workers, [&](int worker) { ++counts[static_cast<std::size_t>(worker)]; });
+    for (int worker = 0; worker < workers; ++worker) ++expected[static_cast<std::size_t>(worker)];
+    ASSERT_EQ(counts, expected) << workers;
+  }
+}
+
+TEST(WorkersThatPay, HaveSharesLongerThanAWakeUp) {
+  EXPECT_EQ(workersThatPay(0, 4), 1);
+  EXPECT_EQ(workersThatPay(1.9 * kMinShareNs, 4), 1);
+  EXPECT_EQ(workersThatPay(2 * kMinShareNs, 4), 2);
+  EXPECT_EQ(workersThatPay(3.5 * kMinShareNs, 4), 3);
+  EXPECT_EQ(workersThatPay(1e300, 4), 4);
+  EXPECT_EQ(workersThatPay(0, 4, 0), 4) << "the minimum can be switched off";
+}
+
 TEST(ThreadTeam, RethrowsWhicheverWorkerFailsAndGoesOn) {
   ThreadTeam team(4);
   for (int failing = 0; failing < 4; ++failing) {

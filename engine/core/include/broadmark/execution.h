@@ -1,6 +1,7 @@
 // How a case is executed: which instruction set, how many threads, which compute device.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <concepts>
 #include <exception>
@@ -39,6 +40,16 @@ Isa bestIsa();
 /// any order, at the same time or one after another, and returns when all calls have.
 using ParallelFor = std::function<void(int workers, const std::function<void(int worker)>& job)>;
 
+/// How many of up to `max_workers` pay for work that one of them does in about `work_ns`: those
+/// with a share of at least `min_share_ns` each. A share must outweigh waking a sleeping thread,
+/// which takes up to 0.1 ms in a virtual machine. An estimate instead of a clock: equal frames are
+/// divided alike.
+inline constexpr double kMinShareNs = 150'000;
+inline int workersThatPay(double work_ns, int max_workers, double min_share_ns = kMinShareNs) {
+  if (work_ns >= min_share_ns * max_workers) return max_workers;
+  return std::max(1, static_cast<int>(work_ns / min_share_ns));
+}
+
 /// Exactly `size` workers, the caller being worker 0. A benchmark needs a fixed number of threads
 /// with fixed shares (same answer for the same count, no stealing, no allocation per call); that,
 /// and a clean ThreadSanitizer, is why this is not a task scheduler. Given enough cores, no worker
@@ -58,17 +69,23 @@ class ThreadTeam {
   /// allowed all bindings; if not, all workers may use the cores `usable`.
   bool pin(std::span<const int> cores, std::span<const int> usable);
 
-  /// Wakes the workers ahead of work expected within half a millisecond, for which they spin. A
-  /// wake-up takes a tenth of that, and far more in a virtual machine.
-  void wake();
+  /// Wakes the first `workers` ahead of work expected within half a millisecond, for which they
+  /// spin. A wake-up takes a tenth of that, and far more in a virtual machine.
+  void wake(int workers);
+  void wake() { wake(size()); }
 
-  /// Calls work(worker) once for each worker, in parallel, and returns when all are done. The first
-  /// exception of any worker is rethrown here. Not reentrant.
+  /// Calls work(worker) once for each of the first `workers`, in parallel, and returns when all are
+  /// done. The others sleep on. The first exception of any worker is rethrown here. Not reentrant.
+  template <class Work>
+  void runOn(int workers, Work&& work) {
+    using Plain = std::remove_reference_t<Work>;
+    start(workers, {[](void* context, int worker) { (*static_cast<Plain*>(context))(worker); },
+                    const_cast<void*>(static_cast<const void*>(std::addressof(work)))});
+  }
+  /// The same on all workers.
   template <class Work>
   void run(Work&& work) {
-    using Plain = std::remove_reference_t<Work>;
-    start({[](void* context, int worker) { (*static_cast<Plain*>(context))(worker); },
-           const_cast<void*>(static_cast<const void*>(std::addressof(work)))});
+    runOn(size(), work);
   }
 
   /// Calls work(worker, range) on each worker, with its share of `count` items, as above.
@@ -82,9 +99,14 @@ class ThreadTeam {
     void (*call)(void* context, int worker) = nullptr;
     void* context = nullptr;
   };
-  void start(Job);
+  /// On a cache line of its own, as its worker spins on it.
+  struct alignas(64) Signal {
+    /// Twice the number of jobs so far; plus one after wake().
+    std::atomic<unsigned> generation{0};
+  };
+  void start(int workers, Job);
   void avoidCallerCore();
-  void publish(unsigned generation);
+  void announceJob(int workers);
   void runJob(int worker);
   void workerLoop(int worker);
   void stop();
@@ -93,8 +115,7 @@ class ThreadTeam {
   ParallelFor parallel_for_;  ///< null: own threads
   int spins_ = 0;             ///< spins of a waiting worker before it sleeps
   Job job_;
-  /// Twice the number of jobs so far; plus one after wake().
-  std::atomic<unsigned> generation_{0};
+  std::vector<Signal> signals_;  ///< by worker
   std::atomic<int> busy_{0};
   std::atomic<bool> stopping_{false};
   std::atomic<bool> failed_{false};
