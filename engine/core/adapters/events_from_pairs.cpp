@@ -1,15 +1,17 @@
 // Events for algorithms that report only the set of pairs of each frame.
 //
 // The pairs of a frame are radix-sorted and merged with the pairs of the frame before: a pair in
-// only one of the two lists has begun or ended. O(k) for k pairs, divided among the team's workers
-// by the lower body. A steady state allocates nothing.
+// only one of the two lists has begun or ended. O(k) for k pairs; many are divided among the team's
+// workers by the lower body. A steady state allocates nothing.
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "adapters/adapter.h"
+#include "adapters/workers_for_pairs.h"
 #include "broadmark/adapters.h"
 
 namespace broadmark {
@@ -29,8 +31,8 @@ class EventsFromPairs final : public Adapter {
     body_bits_ = static_cast<int>(std::bit_width(bodies_));
     shares_ = std::vector<WorkerPairs>(static_cast<std::size_t>(team_->size()));
     for (WorkerPairs& own : shares_) own.found.resize(shares_.size());
-    began_.resize(shares_.size());
-    ended_.resize(shares_.size());
+    began_.reserve(shares_.size());
+    ended_.reserve(shares_.size());
     algorithm_->initialize(scene, first, execution);
     updateObjects(first);
     cleanCache();
@@ -41,13 +43,18 @@ class EventsFromPairs final : public Adapter {
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
     const PairRuns answer = algorithm_->overlaps();
-    team_->run([&](int worker) { distribute(answer, static_cast<std::size_t>(worker)); });
-    team_->run([&](int worker) {
+    chooseWorkers(answer);
+    const int workers = static_cast<int>(used_workers_);
+    team_->runOn(workers,
+                 [&](int worker) { distribute(answer, static_cast<std::size_t>(worker)); });
+    team_->runOn(workers, [&](int worker) {
       gather(static_cast<std::size_t>(worker));
       sort(shares_[static_cast<std::size_t>(worker)]);
       compare(shares_[static_cast<std::size_t>(worker)]);
     });
-    for (std::size_t worker = 0; worker < shares_.size(); ++worker) {
+    began_.resize(used_workers_);
+    ended_.resize(used_workers_);
+    for (std::size_t worker = 0; worker < used_workers_; ++worker) {
       began_[worker] = shares_[worker].began.run();
       ended_[worker] = shares_[worker].ended.run();
     }
@@ -75,28 +82,50 @@ class EventsFromPairs final : public Adapter {
   [[nodiscard]] std::uint64_t keyOf(Pair pair) const {
     return std::uint64_t{pair.a} << body_bits_ | pair.b;
   }
+  [[nodiscard]] std::uint32_t lowerBody(std::uint64_t key) const {
+    return static_cast<std::uint32_t>(key >> body_bits_);
+  }
+
+  /// One worker or all: another number moves the pairs of the previous frame to other owners.
+  void chooseWorkers(PairRuns answer) {
+    constexpr double kPairNs = 25;
+    constexpr double kHysteresis = 2;
+    const double pair_ns = kPairNs * (used_workers_ > 1 ? kHysteresis : 1);
+    const std::size_t workers = workersForPairs(answer, pair_ns, *team_) > 1 ? shares_.size() : 1;
+    if (workers == used_workers_) return;
+    Keys& all = shares_[0].spare;
+    all.clear();
+    for (std::size_t worker = 0; worker < used_workers_; ++worker) {
+      Keys& now = shares_[worker].now;
+      all.insert(all.end(), now.begin(), now.end());
+      now.clear();
+    }
+    std::ranges::sort(all);
+    used_workers_ = workers;
+    for (const std::uint64_t key : all) shares_[ownerOf(lowerBody(key))].now.push_back(key);
+  }
 
   /// Blocks of bodies are assigned round-robin: low ids are the lower body of more pairs than high
   /// ids.
-  [[nodiscard]] std::size_t ownerOf(Pair pair) const {
+  [[nodiscard]] std::size_t ownerOf(std::uint32_t lower_body) const {
     constexpr std::uint32_t kBlock = 64;
-    if (shares_.size() == 1) return 0;
-    return pair.a / kBlock % static_cast<std::uint32_t>(shares_.size());
+    if (used_workers_ == 1) return 0;
+    return lower_body / kBlock % static_cast<std::uint32_t>(used_workers_);
   }
 
   void distribute(PairRuns answer, std::size_t worker) {
     WorkerPairs& own = shares_[worker];
-    for (Keys& found : own.found) found.clear();
+    for (Keys& found : std::span(own.found).first(used_workers_)) found.clear();
     own.began.clear();
     own.ended.clear();
     auto [begin, end] =
-        share(pairCount(answer), static_cast<int>(shares_.size()), static_cast<int>(worker));
+        share(pairCount(answer), static_cast<int>(used_workers_), static_cast<int>(worker));
     for (const PairRun chunk : answer) {
       const std::size_t first = std::min(begin, chunk.size());
       const std::size_t last = std::min(end, chunk.size());
       for (const Pair pair : chunk.subspan(first, last - first)) {
         if (pair.a < pair.b && pair.b < bodies_) [[likely]] {
-          own.found[ownerOf(pair)].push_back(keyOf(pair));
+          own.found[ownerOf(pair.a)].push_back(keyOf(pair));
         } else {
           *own.began.room(1) = pair;  // keeps an invalid pair invalid
           own.began.advance(1);
@@ -111,7 +140,7 @@ class EventsFromPairs final : public Adapter {
     WorkerPairs& own = shares_[worker];
     own.now.swap(own.before);
     own.now.clear();
-    for (const WorkerPairs& source : shares_) {
+    for (const WorkerPairs& source : std::span(shares_).first(used_workers_)) {
       own.now.insert(own.now.end(), source.found[worker].begin(), source.found[worker].end());
     }
   }
@@ -139,8 +168,7 @@ class EventsFromPairs final : public Adapter {
   void compare(WorkerPairs& own) const {
     const auto add = [this](std::uint64_t key, PairBuffer& pairs) {
       const std::uint64_t mask = (std::uint64_t{1} << body_bits_) - 1;
-      pairs.add(static_cast<std::uint32_t>(key >> body_bits_),
-                static_cast<std::uint32_t>(key & mask));
+      pairs.add(lowerBody(key), static_cast<std::uint32_t>(key & mask));
     };
     auto before = own.before.begin();
     for (const std::uint64_t key : own.now) {
@@ -156,8 +184,9 @@ class EventsFromPairs final : public Adapter {
 
   ThreadTeam* team_ = nullptr;
   std::size_t bodies_ = 0;
-  int body_bits_ = 0;  ///< bits per body id
-  std::vector<WorkerPairs> shares_;
+  int body_bits_ = 0;                ///< bits per body id
+  std::vector<WorkerPairs> shares_;  ///< by worker
+  std::size_t used_workers_ = 1;
   std::vector<PairRun> began_;
   std::vector<PairRun> ended_;
 };

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "adapters/workers_for_pairs.h"
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
 
@@ -23,7 +24,10 @@ class MappedPairs {
   void map(ThreadTeam& team, PairRuns found, std::span<const std::uint32_t> bodies,
            const IsWanted& is_wanted) {
     if (pairs_.size() < found.size()) pairs_.resize(found.size());
-    team.run(found.size(), [&](int, Range runs) {
+    constexpr double kPairNs = 5;
+    const int workers = workersForPairs(found, kPairNs, team);
+    team.runOn(workers, [&](int worker) {
+      const Range runs = share(found.size(), workers, worker);
       for (std::size_t i = runs.begin; i < runs.end; ++i) {
         mapRun(found[i], bodies, is_wanted, pairs_[i]);
       }
