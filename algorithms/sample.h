@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxSampleSize = 2048;
 
 /// The size of the sample of `count` boxes.
 constexpr std::size_t sampleSize(std::size_t count) {
-  return std::min(count, std::clamp<std::size_t>(count / 32, 256, kMaxSampleSize));
+  return std::min(count, std::clamp<std::size_t>(count / 32, 64, kMaxSampleSize));
 }
 
 /// The index of the k-th box in a sample of `size` out of `count`. A golden-ratio sequence, as a
