@@ -150,6 +150,7 @@ class CheckedJobs {
     for (std::atomic<bool>& started : started_) started = false;
     finished_ = 0;
     misused_ = false;
+    jobs_ = jobs;
     job_ = &job;
     parallel_for_(jobs, [this](int i) { runJob(i); });
     if (misused_ || finished_ != jobs) {
@@ -160,8 +161,7 @@ class CheckedJobs {
 
  private:
   void runJob(int i) {
-    if (i < 0 || std::cmp_greater_equal(i, started_.size()) ||
-        started_[static_cast<std::size_t>(i)].exchange(true)) {
+    if (i < 0 || i >= jobs_ || started_[static_cast<std::size_t>(i)].exchange(true)) {
       misused_ = true;
       return;
     }
@@ -171,6 +171,7 @@ class CheckedJobs {
 
   ParallelFor parallel_for_;
   const std::function<void(int)>* job_ = nullptr;
+  int jobs_ = 0;  ///< in this run; up to the size of started_
   std::vector<std::atomic<bool>> started_;
   std::atomic<int> finished_{0};
   std::atomic<bool> misused_{false};
@@ -206,9 +207,6 @@ class BroadPhase::Implementation {
   void restore(std::span<const std::byte> state);
 
  private:
-  /// Below this number of bodies a second thread costs more than it saves.
-  static constexpr std::size_t kMinBodiesForThreads = 4096;
-
   [[nodiscard]] bool usesEvents() const {
     return options_.answer == Answer::events || derives_pairs_from_events_;
   }
@@ -469,9 +467,8 @@ void BroadPhase::Implementation::resizeSlots(std::size_t count) {
 }
 
 void BroadPhase::Implementation::createExecution() {
-  const int threads = boxes_.size() < kMinBodiesForThreads ? 1 : options_.threads;
-  if (execution_ != nullptr && execution_->threads() == threads) return;
-  execution_.reset();
+  const int threads = options_.threads;
+  if (execution_ != nullptr) return;
   if (threads > 1 && options_.parallel_for) {
     jobs_.emplace(options_.parallel_for, threads);
     execution_ = std::make_unique<ExecutionContext>(

@@ -354,16 +354,24 @@ std::vector<Aabb> clusters(std::size_t n, std::uint32_t frame, std::uint64_t see
   });
 }
 
+/// Columns and all threads, however few the boxes.
+const ParameterValues kColumnsOnly = {{"max_brute_force", "0"}, {"min_share_us", "0"}};
+
+ParameterValues columnsOnly(ParameterValues parameters = {}) {
+  parameters.insert(kColumnsOnly.begin(), kColumnsOnly.end());
+  return parameters;
+}
+
 class ColumnsFamily : public testing::TestWithParam<Algorithm> {
  protected:
-  /// In every configuration, with default parameters, with the most columns, and with the most
-  /// splits.
+  /// In every configuration, with default parameters, on all threads, with the most columns, and
+  /// with the most splits.
   void check(const std::vector<Aabb>& boxes) {
     const std::vector<Pair> expected = sweptPairs(boxes);
     for (const Configuration& config : configurations(GetParam())) {
       for (const ParameterValues& parameters :
-           {ParameterValues{}, ParameterValues{{"copy_cost", "1"}},
-            ParameterValues{{"copy_cost", "1"}, {"split_threshold", "1"}}}) {
+           {ParameterValues{}, columnsOnly(), columnsOnly({{"copy_cost", "1"}}),
+            columnsOnly({{"copy_cost", "1"}, {"split_threshold", "1"}})}) {
         SCOPED_TRACE(caseName(caseOf(GetParam(), config, parameters)));
         TestRun test_run(GetParam(), config, parameters);
         SceneInfo scene;
@@ -410,7 +418,7 @@ TEST_P(ColumnsFamily, SweepBoxesWhereManyOverlap) {
   };
   check(dense(601, 0));
   check(dense(900, 50));
-  TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1});
+  TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1}, columnsOnly());
   test_run.start(dense(601, 0));
   test_run.step(dense(601, 0));
   const auto counters = countersOf(test_run.broadPhase());
@@ -422,9 +430,33 @@ TEST_P(ColumnsFamily, CopeWithEveryNumberOfBodies) {
   for (std::size_t n = 0; n <= 70; ++n) {
     const std::vector<Aabb> boxes = inputs::touching(n, 0, n);
     TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1},
-                     {{"copy_cost", "1"}});
+                     columnsOnly({{"copy_cost", "1"}}));
     test_run.start(boxes);
     ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << n;
+  }
+}
+
+// An instance tests all pairs of few boxes, and bins many.
+TEST_P(ColumnsFamily, TestAllPairsOfFewBoxes) {
+  for (const Configuration& config : configurations(GetParam())) {
+    SCOPED_TRACE(describe(GetParam(), config));
+    ExecutionContext execution(config.threads, config.isa);
+    const std::unique_ptr<BroadPhase> algorithm = GetParam().create();
+    algorithm->initialize({}, {0, inputs::uniform(1000, 0, 1)}, execution);
+    for (const std::uint32_t n : {50U, 500U, 0U, 1U, 98U, 99U, 1000U}) {
+      const std::vector<Aabb> boxes = inputs::uniform(n, 1, 1);
+      algorithm->updateObjects({1, boxes});
+      algorithm->cleanCache();
+      algorithm->searchOverlaps();
+      ASSERT_EQ(sorted(algorithm->overlaps()), bruteForcePairs(boxes)) << n;
+      ASSERT_EQ(algorithm->validate(), "");
+      const Counters counters = countersOf(*algorithm);
+      const bool few = n <= (config.isa == Isa::scalar ? 98U : 176U);
+      EXPECT_EQ(counters.at("columns") == 0, few) << n;
+      if (!few) continue;
+      EXPECT_EQ(counters.at("tests"), n * (n - 1) / 2);
+      EXPECT_EQ(drawingOf(*algorithm, n).tests(), std::vector<std::uint32_t>(n, n - 1));
+    }
   }
 }
 
@@ -469,7 +501,7 @@ std::vector<Aabb> misleading(std::size_t n) {
 
 TEST_P(ColumnsFamily, LimitTheNumberOfEntries) {
   const std::vector<Aabb> boxes = misleading(4000);
-  TestRun test_run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "1"}});
+  TestRun test_run(GetParam(), {bestIsa(), 1}, columnsOnly({{"copy_cost", "1"}}));
   test_run.start(boxes);
   EXPECT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
   EXPECT_LT(countersOf(test_run.broadPhase()).at("copies"), 10 * boxes.size());
@@ -513,7 +545,7 @@ TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {
     std::vector<Pair> first;
     for (const int threads : {1, 2, 3, 5, 8}) {
       TestRun test_run(GetParam(), {bestIsa(), threads},
-                       {{"copy_cost", "5"}, {"split_threshold", "5"}});
+                       columnsOnly({{"copy_cost", "5"}, {"split_threshold", "5"}}));
       test_run.start(boxes);
       std::vector<Pair> pairs;
       for (const PairRun worker_pairs : test_run.step(boxes))

@@ -179,7 +179,7 @@ class BroadphaseJobs : public testing::Test {
     EXPECT_EQ(listOf(object.pairs()), oracle(inputs::uniform(kBodies, 1, 1)));
   }
 
-  static constexpr std::size_t kBodies = 5000;
+  static constexpr std::size_t kBodies = 20'000;  // enough for several threads
   bp::Options options_;
   bp::ParallelFor run_ = runBackwards;
   std::vector<bp::Box> boxes_ = publicBoxes(inputs::uniform(kBodies, 0, 1));
