@@ -187,7 +187,7 @@ TEST(Tide, RebuildsTheGridWhenBodiesCrowd) {
 // A full search takes 12 ns per body, a frame in the grid 71 ns per moving body, and a build 100 ns
 // per body.
 constexpr tide::Costs kRoundCosts = {
-    .build = 100, .move = 35, .cell_query = 36, .test = 13, .sampled = 0, .body = 12};
+    .build = 100, .move = 35, .cell_query = 36, .test = 13, .body = 12, .layout = 0, .sampled = 0};
 
 /// Ten moves each, one of them of a very large body.
 constexpr std::array<tide::WorkCounts, tide::CostModel::kCalibrationBatches> kBatches = [] {
