@@ -117,7 +117,8 @@ class Tide final : public BroadPhase {
 void Tide::initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) {
   filter_ = scene.filter;
   costs_ = CostModel(reports_events_ ? kEventCosts : kPairCosts,
-                     static_cast<double>(full_search_cost_scale_) / 100, first.boxes.size());
+                     static_cast<double>(full_search_cost_scale_) / 100, first.boxes.size(),
+                     isChangingWorld(scene));
   bodies_.resize(first.boxes.size());
   std::iota(bodies_.begin(), bodies_.end(), 0U);
   full_search_ = columns::create();

@@ -28,6 +28,7 @@ struct Costs {
   double layout = 3000;
   double sampled = 17;      ///< per body of the sample
   double pair_test = 0.11;  ///< in brute force, instead of layout and sample
+  double compaction = 15;   ///< per body of a changing world
 };
 /// The costs of a full search are 0.88 times those fitted: on other processors it is cheaper, in
 /// relation to moves (docs/columns-and-tide.md).
@@ -41,8 +42,11 @@ class CostModel {
   static constexpr std::size_t kCalibrationBatches = 8;
 
   CostModel() = default;
-  CostModel(const Costs& costs, double full_search_scale, std::size_t bodies)
-      : costs_(costs), full_search_scale_(full_search_scale), bodies_(bodies) {}
+  CostModel(const Costs& costs, double full_search_scale, std::size_t bodies,
+            bool is_changing_world = false)
+      : costs_(costs), full_search_scale_(full_search_scale), bodies_(bodies) {
+    if (is_changing_world) costs_.body += costs_.compaction;
+  }
 
   /// To be called in each frame.
   void setPairs(std::uint64_t pairs) { pairs_ = static_cast<double>(pairs); }
