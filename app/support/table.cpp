@@ -159,7 +159,8 @@ std::string formatTable(std::span<const CaseResult> results) {
   std::vector<std::vector<std::string>> table = {{""}};
   std::vector<bool> right_aligned = {false};
   for (const CaseColumn* column : columns) {
-    table.front().push_back(column->shown.heading);
+    const bool has_hits = column->key == "pairs_mean" && isQuery(results.front().answer);
+    table.front().push_back(has_hits ? "hits" : column->shown.heading);
     right_aligned.push_back(!column->isText());
   }
   const std::vector<Row> rows = sortedRows(results);

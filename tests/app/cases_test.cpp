@@ -177,9 +177,9 @@ TEST(OriginalIds, AreOfExistingAlgorithms) {
 }
 
 TEST(CaseNamed, IsTheInverseOfCaseName) {
-  for (const char* name :
-       {"sap", "kd-mt/avx2/t3", "kd-mt/avx2/t3/margin=0.5/objects_per_leaf=20", "sap/events",
-        "kd-mt/avx2/t3/events/margin=0.5", "time-validator/phase_us=7"}) {
+  for (const char* name : {"sap", "kd-mt/avx2/t3", "kd-mt/avx2/t3/margin=0.5/objects_per_leaf=20",
+                           "sap/events", "kd-mt/avx2/t3/events/margin=0.5",
+                           "dbvt-d/rays:100/margin=0.5", "time-validator/phase_us=7"}) {
     EXPECT_EQ(caseName(caseNamed(name, "")), name);
   }
   EXPECT_EQ(caseNamed("kd/scalar", "").isa, Isa::scalar);

@@ -120,6 +120,41 @@ TEST_F(Run, EventsOfEveryAlgorithm) {
   }
 }
 
+TEST_F(Run, QueriesOfEachKind) {
+  for (const std::string kind : {"boxes", "rays", "sweeps", "nearest"}) {
+    runQuietly({"--headless", "freefall", "--objects", "60", "--frames", "5", "--queries",
+                kind + ":40", "--repetitions", "1", "--json", "results.json"});
+    std::set<double> hits;
+    for (const Json& result : cases()) {
+      SCOPED_TRACE(result.at("id").get<std::string>());
+      EXPECT_EQ(result.at("answer"), kind + ":40");
+      EXPECT_EQ(result.at("status"), "ok");
+      EXPECT_EQ(result.at("checked"), true);
+      hits.insert(result.at("pairs").at("mean").get<double>());
+    }
+    EXPECT_GE(cases().size(), 4U) << kind;
+    // All rays and distances of this scene are far from the limits of rounding.
+    EXPECT_EQ(hits.size(), 1U) << kind;
+    EXPECT_GT(*hits.begin(), 0) << kind;
+  }
+}
+
+TEST_F(Run, RefusesQueriesThatItCannotAnswer) {
+  const auto error = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all = {"--headless", "freefall", "--objects", "20", "--frames", "2"};
+    all.insert(all.end(), words.begin(), words.end());
+    const ProgramResult ended = run(all);
+    EXPECT_EQ(ended.status, 2) << ended.out;
+    return ended.err;
+  };
+  EXPECT_THAT(error({"--queries", "rays"}), HasSubstr("KIND:N is expected"));
+  EXPECT_THAT(error({"--queries", "rays:9", "--answer", "events"}), HasSubstr("excludes"));
+  run({"--headless", "freefall", "--objects", "20", "--frames", "2", "--queries", "rays:9",
+       "--algorithm", "kd,bf", "--json", "results.json"});
+  EXPECT_EQ(cases().at(0).at("status"), "ok");
+  EXPECT_EQ(cases().at(1).at("reason"), "does not answer queries of the kind rays");
+}
+
 TEST_F(Run, ARecordingGivesTheSameAnswersAsItsSimulation) {
   const Json simulated = casesOf({"--record", "kept", "--algorithm", "sap"});
   runQuietly({"--headless", recordingIn("kept", "FreeFall Cubes N60 F5frames"), "--algorithm",

@@ -264,6 +264,7 @@ CAMPAIGN_KEYS: dict[str, Callable[[Any], Any]] = {
     "plugin": _strings,
     "device": _string,
     "answer": _string,
+    "queries": _string,
     "repetitions": _repetitions,
     "precision": _precision,
     "max_seconds": _number,

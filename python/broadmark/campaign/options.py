@@ -15,7 +15,7 @@ from broadmark.program import as_options, call, request_file
 from broadmark.recordings import write_recording
 
 #: Campaign options that belong to every selection; the others set how cases are measured.
-SELECTION_OPTIONS = ("plugin", "device", "answer")
+SELECTION_OPTIONS = ("plugin", "device", "answer", "queries")
 
 
 def plugin_options(campaign: Campaign) -> list[str]:

@@ -36,13 +36,15 @@ def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
 def variant_words(case: dict[str, Any]) -> list[str]:
     """The options for algorithm, threads, instruction set, answer and parameters of a case."""
     algorithm = case["algorithm"]
+    answer = case.get("answer", "pairs")
     return as_options(
         plugin=case.get("plugin") or None,
         algorithm=algorithm,
         threads=case["threads"],
         isa=case["isa"] if case.get("vectorised") else None,
         device=case.get("device") or None,
-        answer=None if case.get("answer", "pairs") == "pairs" else case["answer"],
+        answer="events" if answer == "events" else None,
+        queries=answer if ":" in answer else None,
         param={f"{algorithm}:{name}": value for name, value in case["params"].items()},
     )
 
