@@ -103,7 +103,7 @@ TEST_F(Torture, AttributesTheEndOfAProcessToItsWorld) {
 
 TEST_F(Torture, FindsAFaultOfLateFrames) {
   const ProgramResult ended = run(
-      call({"--plugin", places::faultyPlugin(), "--algorithm", "late-fault", "--rounds", "100"}));
+      call({"--plugin", places::faultyPlugin(), "--algorithm", "late-fault", "--rounds", "300"}));
   EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
   const Json found = log().at("found");
   ASSERT_FALSE(found.empty());
