@@ -16,7 +16,7 @@ namespace broadmark::broadphase {
 template <class Query, class T, class Answer>
 void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& results,
                           std::vector<T> Worker::*found, ThreadTeam& team, Answer answer) {
-  constexpr std::size_t kMinQueriesForThreads = 64;
+  constexpr double kQueryNs = 500;
   results.items.clear();
   results.starts.resize(queries.size() + 1);
   const auto answer_range = [&](int worker, Range range) {
@@ -28,12 +28,9 @@ void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& resul
       answer(queries[i], items);
     }
   };
-  const int workers = queries.size() < kMinQueriesForThreads ? 1 : team.size();
-  if (workers == 1) {
-    answer_range(0, {0, queries.size()});
-  } else {
-    team.run(queries.size(), answer_range);
-  }
+  const int workers = workersThatPay(kQueryNs * static_cast<double>(queries.size()), team.size());
+  team.runOn(workers,
+             [&](int worker) { answer_range(worker, share(queries.size(), workers, worker)); });
   for (int worker = 1; worker < workers; ++worker) {
     const std::vector<T>& items = workers_[static_cast<std::size_t>(worker)].*found;
     const Range range = share(queries.size(), workers, worker);

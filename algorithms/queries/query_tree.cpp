@@ -106,7 +106,8 @@ void QueryTree::build(const QueryWorld& world, ThreadTeam& team) {
   }
   slot_of_.assign(world.boxes.size(), kNone);
   nodes_.clear();
-  if (team.size() > 1 && items_.size() > kWidth) {
+  constexpr double kBuildNs = 200;  // for a body
+  if (workersThatPay(kBuildNs * static_cast<double>(items_.size()), team.size()) > 1) {
     buildSubtrees(team);
   } else {
     buildNode(nodes_, partOf(items_), 0);
@@ -319,10 +320,13 @@ void QueryTree::refitNodes(const QueryWorld& world, bool evicts, Range range, Wo
 }
 
 void QueryTree::refitAll(const QueryWorld& world, ThreadTeam& team) {
-  team.run(nodes_.size(), [&](int worker, Range range) {
-    refitNodes(world, true, range, workers_[static_cast<std::size_t>(worker)]);
+  constexpr double kRefitNs = 100;  // for a node
+  const int workers = workersThatPay(kRefitNs * static_cast<double>(nodes_.size()), team.size());
+  team.runOn(workers, [&](int worker) {
+    refitNodes(world, true, share(nodes_.size(), workers, worker),
+               workers_[static_cast<std::size_t>(worker)]);
   });
-  for (int i = 0; i < team.size(); ++i) {
+  for (int i = 0; i < workers; ++i) {
     const Worker& worker = workers_[static_cast<std::size_t>(i)];
     loose_nodes_ += worker.loosened;
     for (const NodeIndex node : worker.postponed) refitParents(node);

@@ -229,25 +229,25 @@ static void test_queries(void) {
 }
 
 static void test_jobs(void) {
-  static bm_box many[5000];
+  static bm_box many[50000];
   int jobs = 0;
   bm_options options;
   bm_default_options(&options);
   options.threads = 3;
   options.parallel_for = run_backwards;
   options.user = &jobs;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 50000; ++i) {
     many[i].min[0] = many[i].min[1] = many[i].min[2] = (float)i;
     many[i].max[0] = many[i].max[1] = many[i].max[2] = (float)i + 1;
   }
   bm_broadphase* object = NULL;
   bm_pairs pairs;
   EXPECT(bm_create(&options, &object) == BM_OK);
-  const bm_boxes all = {many[0].min, many[0].max, 5000, sizeof(bm_box)};
+  const bm_boxes all = {many[0].min, many[0].max, 50000, sizeof(bm_box)};
   EXPECT(bm_update(object, all) == BM_OK);
   EXPECT(bm_get_pairs(object, &pairs) == BM_OK);
-  EXPECT(pairs.count == 4999);
-  EXPECT(jobs > 0 && jobs % 3 == 0);
+  EXPECT(pairs.count == 49999);
+  EXPECT(jobs > 1);
   bm_destroy(object);
 }
 

@@ -126,7 +126,7 @@ TEST(BroadphaseQueries, AreRightOnAnyThreads) {
     }
     for (std::uint32_t frame = 0; frame < 3; ++frame) {
       const QueryOracle oracle{input.boxes(kBodies, frame, 1)};
-      const QueryBatches batches = queriesAbout(oracle.boxes, 70, frame);
+      const QueryBatches batches = queriesAbout(oracle.boxes, 1000, frame);
       QueryBatches first;
       for (std::size_t i = 0; i < objects.size(); ++i) {
         QueryBatches found = batches;
@@ -339,11 +339,11 @@ TEST(BroadphaseQueries, SurviveAFailingJobSystem) {
     runBackwards(jobs, job);
   };
   bp::BroadPhase object(options);
-  QueryOracle oracle{inputs::uniform(5000, 0, 1)};
+  QueryOracle oracle{inputs::uniform(20000, 0, 1)};
   object.update(publicBoxes(oracle.boxes));
   std::vector<std::byte> state;
   object.save(state);
-  QueryBatches batches = queriesAbout(oracle.boxes, 70, 1);
+  QueryBatches batches = queriesAbout(oracle.boxes, 700, 1);
   const auto expect_failure = [&] {
     fails = true;
     EXPECT_EQ(messageOf<std::runtime_error>([&] { batches.run(object); }), "no jobs");
@@ -353,18 +353,18 @@ TEST(BroadphaseQueries, SurviveAFailingJobSystem) {
   batches.run(object);
   EXPECT_EQ(batches.fault(oracle), "");
   expect_failure();  // answering
-  oracle.boxes = inputs::uniform(5000, 1, 1);
+  oracle.boxes = inputs::uniform(20000, 1, 1);
   object.update(publicBoxes(oracle.boxes));
   expect_failure();  // refitting
   batches.run(object);
   EXPECT_EQ(batches.fault(oracle), "");
 
   fails = true;
-  EXPECT_THROW(object.update(publicBoxes(inputs::uniform(5000, 2, 1))), std::runtime_error);
+  EXPECT_THROW(object.update(publicBoxes(inputs::uniform(20000, 2, 1))), std::runtime_error);
   fails = false;
   EXPECT_THAT(messageOf<std::logic_error>([&] { batches.run(object); }), HasSubstr("restore"));
   object.restore(state);
-  oracle.boxes = inputs::uniform(5000, 0, 1);
+  oracle.boxes = inputs::uniform(20000, 0, 1);
   batches.run(object);
   EXPECT_EQ(batches.fault(oracle), "");
 }
