@@ -66,7 +66,7 @@ class ScopedMargin {
 /// Calls visit(body) for each leaf that a query of Bullet's finds.
 template <class Visit>
 struct Candidates final : btBroadphaseRayCallback {
-  explicit Candidates(Visit each) : visit(each) {}
+  explicit Candidates(Visit on_leaf) : visit(on_leaf) {}
   bool process(const btBroadphaseProxy* proxy) override {
     visit(static_cast<std::uint32_t>(proxy->m_uniqueId) - 1);
     return true;

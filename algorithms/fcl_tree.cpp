@@ -164,7 +164,7 @@ class Fcl final : public MovedBoxes {
   void findPairs() override { manager_.collide(this, report); }
 
   /// A query and the algorithm that answers it.
-  struct Search {
+  struct QueryContext {
     Fcl* tree;
     const QueryBatch* batch;
     std::uint32_t index;
@@ -174,14 +174,14 @@ class Fcl final : public MovedBoxes {
     for (std::uint32_t i = 0; i < batch.queries.size(); ++i) {
       Body query(shape_, i);
       query.place(batch.queries[i].box);
-      Search search{this, &batch, i};
-      manager_.collide(&query, &search, reportHit);
+      QueryContext context{this, &batch, i};
+      manager_.collide(&query, &context, reportHit);
     }
   }
 
   static bool reportHit(fcl::CollisionObjectd* found, fcl::CollisionObjectd* /*query*/,
                         void* data) {
-    const auto& [tree, batch, index] = *static_cast<Search*>(data);
+    const auto& [tree, batch, index] = *static_cast<QueryContext*>(data);
     const std::uint32_t body = static_cast<Body*>(found)->number();
     if (hits(batch->kind, batch->queries[index], tree->boxes()[body])) {
       tree->pairs().addHit(index, body);

@@ -254,6 +254,19 @@ void requireParts(const SessionOptions& options) {
   if (!options.cases.device.empty()) requirePart(parts::kOpenCl, "--device");
 }
 
+/// Throws InputError for a case that the inspector cannot show.
+void requireShowable(const Plan& plan) {
+  for (const PlanEntry& entry : plan.entries) {
+    for (const Case& test_case : entry.cases) {
+      if (!isQuery(test_case.answer)) continue;
+      throw InputError(
+          fmt::format("--case: {} answers queries, which the inspector does not show: "
+                      "add --headless",
+                      caseName(test_case)));
+    }
+  }
+}
+
 /// Makes the plan, then lists it, runs it, exports its case or opens it in the inspector. Returns
 /// the exit status. Throws InputError.
 int runSession(const SessionOptions& options) {
@@ -268,6 +281,7 @@ int runSession(const SessionOptions& options) {
   if (options.list_only) return listCases(plan);
   requireParts(options);
   if (options.inspector()) {
+    requireShowable(plan);
     return runInspector(std::move(plan), !options.headless, options.script);
   }
   if (!options.export_case.empty()) {

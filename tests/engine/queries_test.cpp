@@ -53,8 +53,8 @@ TEST(Queries, NearestBodiesMayBeAnyAtEqualDistance) {
 
   std::vector<Pair> answer(found.certain);
   const auto difference = [&] {
-    const PairRun run = answer;
-    return findDifference({&run, 1}, found, {1, boxes});
+    const PairRun reported = answer;
+    return findDifference({&reported, 1}, found, {1, boxes});
   };
   EXPECT_EQ(difference().missed_count, 1U) << "too few";
   answer.push_back({0, 8});

@@ -78,7 +78,8 @@ OpenedResults::OpenedResults(std::filesystem::path file, Results results,
     row.algorithm = variantOf(result);
     row.recording = recordingId(result.recording);
     row.mismatches = result.mismatchedFrames();
-    row.obstacle = obstacleTo(result, file_, algorithms);
+    row.obstacle =
+        isQuery(result.answer) ? "queries are not shown" : obstacleTo(result, file_, algorithms);
     if (!result.repetitions.empty()) row.summary = result.summary();
     row.result = std::move(result);
     row.marked = row.summary && marked < kMaxMarked && row.recording == rows_.front().recording;

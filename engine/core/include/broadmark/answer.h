@@ -38,7 +38,7 @@ constexpr bool isQuery(Answer answer) {
 }
 
 /// The largest number of queries in a frame.
-inline constexpr std::uint32_t kMaxQueries = 100'000'000;
+inline constexpr std::uint32_t kMaxQueries = 10'000'000;
 
 /// "pairs", "events", "rays:1000"
 std::string answerName(Answer);
