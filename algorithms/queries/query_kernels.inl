@@ -5,11 +5,11 @@ using broadphase::BoxTest;
 using broadphase::BoxVisitor;
 using broadphase::CastAxis;
 using broadphase::CastTest;
+using broadphase::largerOf;
 using broadphase::NearestTest;
 using broadphase::OrderedVisitor;
 using broadphase::QueryKernels;
 using broadphase::QueryNode;
-using broadphase::largerOf;
 using broadphase::smallerOf;
 
 inline constexpr std::uint32_t kWidth = QueryNode::kWidth;
@@ -39,12 +39,11 @@ inline SlotMask slotsWith(std::uint32_t layers, const QueryNode& node) {
 }
 
 inline unsigned testSlots(const QueryNode& node, const BoxTest& test) {
-  return slotBits((boundsIn(node.bounds[0]) <= test.bounds[3]) &
-                  (boundsIn(node.bounds[3]) >= test.bounds[0]) &
-                  (boundsIn(node.bounds[1]) <= test.bounds[4]) &
-                  (boundsIn(node.bounds[4]) >= test.bounds[1]) &
-                  (boundsIn(node.bounds[2]) <= test.bounds[5]) &
-                  (boundsIn(node.bounds[5]) >= test.bounds[2]) & slotsWith(test.layers, node));
+  return slotBits(
+      (boundsIn(node.bounds[0]) <= test.bounds[3]) & (boundsIn(node.bounds[3]) >= test.bounds[0]) &
+      (boundsIn(node.bounds[1]) <= test.bounds[4]) & (boundsIn(node.bounds[4]) >= test.bounds[1]) &
+      (boundsIn(node.bounds[2]) <= test.bounds[5]) & (boundsIn(node.bounds[5]) >= test.bounds[2]) &
+      slotsWith(test.layers, node));
 }
 
 inline unsigned testSlots(const QueryNode& node, const CastTest& test, double limit,
@@ -57,8 +56,7 @@ inline unsigned testSlots(const QueryNode& node, const CastTest& test, double li
     const auto far_time = [&](int axis) __attribute__((always_inline)) {
       return test.axes[axis].timeOfFar(node.bounds[test.far_rows[axis]][i]);
     };
-    const double enter =
-        largerOf(largerOf(near_time(0), near_time(1)), largerOf(near_time(2), 0));
+    const double enter = largerOf(largerOf(near_time(0), near_time(1)), largerOf(near_time(2), 0));
     const double leave = smallerOf(smallerOf(far_time(0), far_time(1)), far_time(2));
     values[i] = enter;
     hits[i] = enter <= smallerOf(limit, leave * (1 + broadphase::kCastTolerance)) ? -1 : 0;

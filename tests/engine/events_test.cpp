@@ -241,8 +241,7 @@ TEST_P(WrongEvents, AreMismatches) {
     // Also with a margin that allows every extra pair, unless the fault is only an extra pair.
     const bool only_extra = name == "one did not end";
     const CaseResult with_margin = resultOf(spoil, GetParam(), 1000);
-    EXPECT_EQ(with_margin.status, only_extra ? Status::ok : Status::mismatch)
-        << with_margin.reason;
+    EXPECT_EQ(with_margin.status, only_extra ? Status::ok : Status::mismatch) << with_margin.reason;
   }
 }
 
