@@ -199,11 +199,11 @@ Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
           estimate + factor * (quantile(resampled, 0.975) - estimate)};
 }
 
-Estimate medianOfSeries(std::span<const double> values, double error_rate) {
+Estimate medianOfSeries(std::span<const double> values, double error_rate, std::size_t min_block) {
   const std::vector<double> sorted = sortedCopy(values);
   const double median = sortedQuantile(sorted, 0.5);
   const std::vector<double> signs = signsAroundMedian(values, median);
-  const std::size_t block = std::min(safeBlockLength(signs), values.size());
+  const std::size_t block = std::min(std::max(safeBlockLength(signs), min_block), values.size());
   const auto count = static_cast<double>(values.size());
   const double variance = std::max(longRunVariance(signs, block), 1.0);
   // Overlapping blocks have 1.5 times the degrees of freedom of separate ones.

@@ -59,6 +59,7 @@ struct DuelResult {
     std::vector<double> seconds;  ///< the total of each round's frame
   };
   std::vector<Side> sides;
+  std::size_t processes = 0;  ///< in which each side has run, one after another
   /// All sides, the fastest first; empty unless ok(). A side gets a new rank if it is slower than
   /// the first side of the previous rank by more than the margin.
   std::vector<DuelRank> ranking;
@@ -77,8 +78,9 @@ struct DuelResult {
   [[nodiscard]] Estimate ratio(std::size_t a, std::size_t b) const;
 };
 
-/// Repeats passes over the frames, each with fresh instances, as often as necessary. Requires two
-/// or more sides. Ends after the first pass if some fail. Throws InputError, and Cancelled.
+/// Repeats passes over the frames, each with fresh instances, as often as necessary, in one process
+/// after another. Requires two or more sides. Ends after the first pass if some fail. Throws
+/// InputError, and Cancelled.
 DuelResult runDuel(const std::vector<DuelSide>& sides, FrameSource& frames, const DuelOptions&);
 
 }  // namespace broadmark

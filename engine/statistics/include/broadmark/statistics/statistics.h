@@ -33,9 +33,10 @@ struct Estimate {
 
 /// The median of a time series with correlated neighbours, such as the frames of a run. The
 /// interval inverts a sign test: it ends at two order statistics, further apart where signs around
-/// the median are correlated within safeBlockLength(). It misses the true median with probability
-/// `error_rate`, and is infinite for too few values. Requires values.
-Estimate medianOfSeries(std::span<const double> values, double error_rate = 0.05);
+/// the median are correlated within safeBlockLength(), or within `min_block` values. It misses the
+/// true median with probability `error_rate`, and is infinite for too few values. Requires values.
+Estimate medianOfSeries(std::span<const double> values, double error_rate = 0.05,
+                        std::size_t min_block = 1);
 /// The block length for resampling a series to estimate its mean: the rule of Politis and White
 /// (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of the series.
 std::size_t blockLength(std::span<const double> values);
