@@ -8,8 +8,8 @@ function(broadmark_configure target)
   # -falign-functions: unrelated changes do not move hot loops across cache lines (5 % slower).
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
     -Wno-sign-conversion -Wno-missing-field-initializers  # omitted members have defaults
-    # Branchless on purpose; and GCC 12's stable_sort uses what GCC 12 deprecates.
-    $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical$<SEMICOLON>-Wno-deprecated-declarations>
+    # Branchless on purpose; GCC 12's stable_sort uses what GCC 12 deprecates; Boost before 1.83.
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical$<SEMICOLON>-Wno-deprecated-declarations$<SEMICOLON>-Wno-enum-constexpr-conversion>
     -ffp-contract=off -fno-semantic-interposition -falign-functions=64
     $<$<BOOL:${BROADMARK_WERROR}>:-Werror>)
   if(BROADMARK_SANITIZE)
