@@ -70,6 +70,10 @@ class RTree final : public MovedBoxes {
                   ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
     pack();
+    if (!incremental_) return;
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+      values_.push_back(valueOf(boxes()[body], body));
+    }
   }
 
   void updateStructures() override { incremental_ ? update() : pack(); }
@@ -82,11 +86,9 @@ class RTree final : public MovedBoxes {
  private:
   /// Builds the tree from all boxes.
   void pack() {
-    values_.clear();
     packed_.clear();
-    for (const Aabb& box : boxes()) {
-      values_.push_back(valueOf(box, static_cast<std::uint32_t>(values_.size())));
-      if (!isEmpty(box)) packed_.push_back(values_.back());
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+      if (!isEmpty(boxes()[body])) packed_.push_back(valueOf(boxes()[body], body));
     }
     tree_ = Tree(packed_);
   }
@@ -128,8 +130,8 @@ class RTree final : public MovedBoxes {
   }
 
   bool incremental_;
-  std::vector<Value> values_;  ///< by body: as in the tree, and of absent bodies
   std::vector<Value> packed_;  ///< of the present bodies
+  std::vector<Value> values_;  ///< if incremental: by body, also of absent ones
   Tree tree_;
 };
 

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "queries/query_tree.h"
 
 namespace broadmark::broadphase {
+
 template <class Query, class T, class Answer>
 void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& results,
                           std::vector<T> Worker::*found, ThreadTeam& team, Answer answer) {
