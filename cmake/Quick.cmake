@@ -2,7 +2,7 @@
 # CMAKE_UNITY_BUILD.)
 #
 # Sources still include what they use: every file compiles without precompiled headers
-# (CMAKE_DISABLE_PRECOMPILE_HEADERS; `./check --lint` does so).
+# (CMAKE_DISABLE_PRECOMPILE_HEADERS; `./check --lint` and `--asan` do so).
 
 # Library headers that most files include.
 set(broadmark_heavy_headers <algorithm> <array> <chrono> <cmath> <cstdint> <deque> <filesystem>
