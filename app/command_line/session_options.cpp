@@ -142,7 +142,7 @@ void SessionParser::addRun() {
                  "seed of the interleaving order of cases, which differs in each repetition"),
       kInspector);
   tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMaxPasses,
-                 "unmeasured repetitions before the measured ones"),
+                 "unmeasured passes at the start of each repetition, in its process"),
       kInspector);
   tag(addCount(app_, options_.count), kInspector | kExport);
   tag(addPositive(app_, "--time-limit", "SECONDS", policy.frame_limit_seconds,

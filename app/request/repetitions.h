@@ -15,15 +15,12 @@ struct RepetitionOptions {
   static constexpr int kMinUntilPrecise = 5;
   static constexpr int kMaxUntilPrecise = 100;
 
-  int warmup = 0;              ///< unmeasured repetitions before the measured ones
+  int warmup = 0;              ///< unmeasured passes before each repetition
   int max_count = 1;           ///< also the minimum unless until_precise
   bool until_precise = false;  ///< repeat a case until its mean is precise
   double precision = 0.02;     ///< relative width of the mean's confidence interval
   double max_seconds = 300;    ///< per recording
   std::uint64_t order_seed = 1;
-
-  /// Maximum repetitions of a case, including warm-up.
-  [[nodiscard]] int passes() const { return warmup + max_count; }
 };
 
 /// Decides when each case of a recording has been repeated often enough.

@@ -1,5 +1,6 @@
 // Runs recordings one after the other. The repetitions of a recording's cases are interleaved, so
-// that a disturbance of the machine affects all cases alike. Result files are atomically rewritten
+// that a disturbance of the machine affects all cases alike, and each has its own process, as times
+// differ between processes by where memory lies. Result files are atomically rewritten
 // after every recording, so that finished cases survive an aborted run.
 
 #include "run/plan_run.h"
@@ -67,12 +68,17 @@ Environment environmentOf(const std::string& requested_device) {
   return environment;
 }
 
+/// Frames that a repetition of a case runs, warm-up included.
+std::uint64_t stepsOfRepetition(const RunRequest& request, const SceneInfo& scene) {
+  return std::min<std::uint64_t>(scene.frames, request.policy.max_frames) *
+         static_cast<std::uint64_t>(request.repetitions.warmup + 1);
+}
+
 /// A case of the current recording.
 struct PlannedCase {
   const Case* test_case = nullptr;
   CaseResult result;
-  std::unique_ptr<CaseRun> run = {};  ///< null before the first and after the last pass
-  bool finished = false;              ///< has no more passes
+  bool finished = false;  ///< has no more repetitions
 };
 
 class PlanRun {
@@ -96,9 +102,6 @@ class PlanRun {
   }
 
  private:
-  /// Above this number of cases, their processes, threads and devices are released between passes.
-  static constexpr std::size_t kMaxLiveCases = 64;
-
   /// Runs all cases of a recording. Returns false when cancelled.
   bool runRecording(PlanEntry& entry) {
     const auto recording =
@@ -110,7 +113,7 @@ class PlanRun {
       cases_.push_back(plannedCase(test_case, entry.source));
     bool is_complete = false;
     try {
-      is_complete = runPasses(*recording, oracle);
+      is_complete = runRepetitions(*recording, oracle);
     } catch (...) {
       try {
         storeResults(entry);
@@ -135,32 +138,30 @@ class PlanRun {
   }
 
   /// Runs all repetitions, interleaved. Returns false when cancelled.
-  bool runPasses(IndexedFrames& recording, Oracle& oracle) {
+  bool runRepetitions(IndexedFrames& recording, Oracle& oracle) {
     const RepetitionOptions& repetitions = request_.repetitions;
     const SceneInfo& scene = recording.scene();
-    const std::uint64_t steps_of_pass = std::min(scene.frames, request_.policy.max_frames);
-    const auto passes = static_cast<std::uint64_t>(repetitions.passes());
+    const auto count = static_cast<std::uint64_t>(repetitions.max_count);
+    const std::uint64_t steps_of_repetition = stepsOfRepetition(request_, scene);
     observer_.onTaskStart(fmt::format("running {} N{}", scene.name, scene.objects),
-                          steps_of_pass * passes * cases_.size());
+                          steps_of_repetition * count * cases_.size());
     const RepetitionRule rule(repetitions);
     TurnOrder order(cases_.size(), repetitions.order_seed);
     std::uint64_t steps = 0;
-    for (std::uint64_t pass = 0; pass < passes; ++pass) {
-      if (passes > 1) order.shuffle();
+    for (std::uint64_t repetition = 0; repetition < count; ++repetition) {
+      if (count > 1) order.shuffle();
       for (const std::size_t i : order.cases()) {
         PlannedCase& planned = cases_[i];
         if (planned.finished) continue;
-        const bool measured = std::cmp_greater_equal(pass, repetitions.warmup);
-        if (!runOnce(planned, recording, oracle, steps, measured)) return false;
-        steps += steps_of_pass;
+        if (!runOnce(planned, recording, oracle, steps)) return false;
+        steps += steps_of_repetition;
         CaseResult& result = planned.result;
         if (result.status != Status::ok || rule.isEnough(result)) {
           result.conditions.repetitions = rule.expected(result);
           if (result.status == Status::ok && !rule.isPrecise(result)) warnImprecise(result);
           finish(planned);
-          steps += steps_of_pass * (passes - 1 - pass);
+          steps += steps_of_repetition * (count - 1 - repetition);
         }
-        if (planned.finished || cases_.size() > kMaxLiveCases) planned.run.reset();
         observer_.onProgress(steps, planned.test_case->algorithm.id);
       }
     }
@@ -182,33 +183,33 @@ class PlanRun {
     later_warnings_.push_back(fmt::format("{}: {}", result.id, warning));
   }
 
-  /// Runs a repetition of a case unless it is skipped. Returns false when cancelled.
-  bool runOnce(PlannedCase& planned, IndexedFrames& recording, Oracle& oracle, std::uint64_t steps,
-               bool measured) {
+  /// Runs a repetition of a case in a new executor, after its warm-up, unless the case is skipped.
+  /// Returns false when cancelled.
+  bool runOnce(PlannedCase& planned, IndexedFrames& recording, Oracle& oracle,
+               std::uint64_t steps) {
     CaseResult& result = planned.result;
     const Case& test_case = *planned.test_case;
     if (timed_out_.skip(result, test_case)) return true;
     const auto cancelled = [this] { return observer_.cancelled(); };
-    if (!planned.run) {
-      planned.run =
-          std::make_unique<CaseRun>(test_case, request_.policy, make_executor_, cancelled);
-    }
     const RunHooks hooks{.cancelled = cancelled, .progress = [&](std::uint32_t frame) {
                            observer_.onProgress(steps + frame, test_case.algorithm.id);
                          }};
-    if (!runRepetition(result, *planned.run, recording, oracle, hooks, measured)) return false;
+    CaseRun case_run(test_case, request_.policy, make_executor_, cancelled);
+    for (int pass = request_.repetitions.warmup; pass >= 0 && result.status == Status::ok; --pass) {
+      if (!runRepetition(result, case_run, recording, oracle, hooks, pass == 0)) return false;
+    }
     timed_out_.add(result, test_case);
     return true;
   }
 
-  /// Stores the result of a case after its last pass.
+  /// Stores the result of a case after its last repetition.
   void finish(PlannedCase& planned) {
     files_.add(planned.result);
     planned.finished = true;
     observer_.onCaseFinished(planned.result);
   }
 
-  /// Stores the results of all cases that have run at least one pass.
+  /// Stores the results of all cases that have run at least one repetition.
   void storeResults(const PlanEntry& entry) {
     std::vector<CaseResult> done;
     for (PlannedCase& planned : cases_) {
@@ -258,11 +259,11 @@ class PlanRun {
 }  // namespace
 
 std::uint64_t stepsOf(const Plan& plan) {
-  const auto passes = static_cast<std::uint64_t>(plan.request.repetitions.passes());
+  const RunRequest& request = plan.request;
   std::uint64_t steps = 0;
   for (const PlanEntry& entry : plan.entries) {
-    steps += passes * entry.cases.size() *
-             std::min(entry.source.reference.scene.frames, plan.request.policy.max_frames);
+    steps += stepsOfRepetition(request, entry.source.reference.scene) * entry.cases.size() *
+             static_cast<std::uint64_t>(request.repetitions.max_count);
   }
   return steps;
 }

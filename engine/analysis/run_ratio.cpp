@@ -76,36 +76,28 @@ std::vector<double> expectedMinimumTimes(std::span<const TimedRun> runs, std::si
   return minimum;
 }
 
-/// The logarithm of the mean of each frame's minimum over the chosen passes.
-double logMeanMinimum(const std::vector<const PassTimes*>& passes,
-                      std::span<const std::size_t> chosen, std::size_t frames) {
+/// The logarithm of the mean of each frame's minimum over the passes but one, `left_out`.
+double logMeanMinimum(const std::vector<const PassTimes*>& passes, std::size_t frames,
+                      const PassTimes* left_out = nullptr) {
   double sum = 0;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     double minimum = std::numeric_limits<double>::infinity();
-    for (const std::size_t pass : chosen) minimum = std::min(minimum, (*passes[pass])[frame]);
+    for (const PassTimes* pass : passes) {
+      if (pass != left_out) minimum = std::min(minimum, (*pass)[frame]);
+    }
     sum += minimum;
   }
-  return std::log(sum);
+  return std::log(sum / static_cast<double>(frames));
 }
 
-/// Variance of logMeanMinimum() all passes, estimated from halves of them (McCarthy, 1969, "Pseudo-
-/// replication: half samples"): a statistic of half of the values varies about its mean as the
-/// statistic of all values does about the truth. Requires at least two passes.
+/// Variance of logMeanMinimum() by the jackknife (Tukey, 1958, "Bias and confidence in not-quite
+/// large samples"). Requires at least two passes.
 double varianceOfLogMean(const std::vector<const PassTimes*>& passes, std::size_t frames) {
-  constexpr int kHalves = 100;
-  std::vector<std::size_t> order(passes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::size_t half = passes.size() / 2;
-  std::mt19937_64 random;
-  std::vector<double> levels(kHalves);
-  for (double& level : levels) {
-    std::ranges::shuffle(order, random);
-    level = logMeanMinimum(passes, std::span(order).first(half), frames);
-  }
+  std::vector<double> levels;
+  for (const PassTimes* pass : passes) levels.push_back(logMeanMinimum(passes, frames, pass));
+  const auto count = static_cast<double>(passes.size());
   const double deviation = standardDeviation(levels);
-  // Corrects for the smaller half of an odd number of passes.
-  return deviation * deviation * static_cast<double>(half) /
-         static_cast<double>(passes.size() - half);
+  return deviation * deviation * (count - 1) * (count - 1) / count;
 }
 
 /// Noise between repetitions of both sides: a log half-width.
@@ -123,10 +115,7 @@ double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRu
 double baselineSpread(std::span<const TimedRun> before, std::size_t frames) {
   std::vector<double> levels;
   for (const TimedRun& timed : before) {
-    const std::vector<const PassTimes*> passes = passesOf({&timed, 1});
-    std::vector<std::size_t> all(passes.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    levels.push_back(logMeanMinimum(passes, all, frames));
+    levels.push_back(logMeanMinimum(passesOf({&timed, 1}), frames));
   }
   const auto runs = static_cast<double>(levels.size());
   return studentT(0.05, runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
@@ -261,7 +250,9 @@ std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> ca
     }
     const std::optional<double> drift = own.driftOf(i);
     if (const std::optional<double> spread = own.spreadWithout(i)) {
-      ratios[i] = ratioFrom(*own[i], *drift, std::max(own[i]->noise, *spread));
+      // Both estimate this case's error: from its few repetitions, and from how far other cases are
+      // off. Their mean square is closer than either (Smyth, 2004: moderated variances).
+      ratios[i] = ratioFrom(*own[i], *drift, std::hypot(own[i]->noise, *spread) / std::sqrt(2.0));
     } else {
       // One or two others may have changed themselves: the ratio may be their drift or this case's.
       ratios[i] = ratioFrom(

@@ -173,7 +173,7 @@ bool runRepetition(CaseResult& result, CaseRun& case_run, FrameSource& source, O
     result.status = Status::error;
     result.reason = "no instructions were counted";
   }
-  result.peak_bytes = case_run.report().peak_bytes;
+  result.peak_bytes = std::max(result.peak_bytes, case_run.report().peak_bytes);
   result.conditions.pinned = case_run.report().pinned;
   return true;
 }

@@ -47,7 +47,7 @@ class Estimate:
     def __init__(self, ledger: Ledger, options: dict[str, Any]) -> None:
         self._ledger = ledger
         repetitions = options.get("repetitions", 1)
-        self._passes: int = options.get("warmup", 0) + (
+        self._passes: int = (options.get("warmup", 0) + 1) * (
             MIN_AUTO_REPETITIONS if repetitions == "auto" else repetitions
         )
         self._limit: float = options.get("time_limit", DEFAULT_TIME_LIMIT)

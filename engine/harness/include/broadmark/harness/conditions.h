@@ -11,7 +11,7 @@ namespace broadmark {
 
 struct Conditions {
   CheckMode check = CheckMode::full;
-  int warmup = 0;       ///< unmeasured repetitions at the start
+  int warmup = 0;       ///< unmeasured passes at the start of each repetition
   int repetitions = 0;  ///< requested; an interrupted run has fewer
   // Limits in seconds; nullopt: no limit.
   std::optional<double> frame_limit_seconds;
