@@ -162,15 +162,18 @@ class CompactingAdapter final : public Adapter {
   /// another layer: in a LiveFilter, at the latest when its box changes.
   bool updatePopulation(const Frame& frame) {
     bool layers_changed = false;
+    bool population_changed = false;
     for (const std::span<const std::uint32_t> bodies : {*frame.changed, frame.filter_changed}) {
       for (const std::uint32_t body : bodies) {
         const auto layer = static_cast<std::uint8_t>(filter_.layerOf(body));
         const std::uint8_t present = isEmpty(frame.boxes[body]) ? 0 : 1;
         layers_changed |= layer != layers_[body];
+        population_changed |= present != present_[body];
         population_[layer] += present;
         population_[std::exchange(layers_[body], layer)] -= std::exchange(present_[body], present);
       }
     }
+    if (!layers_changed && !population_changed) return false;
     if (layers_changed && occupancy_) listBodies();
     const std::uint32_t before = std::exchange(active_layers_, 0);
     for (std::size_t layer = 0; layer < LayerMatrix::kLayers; ++layer) {
