@@ -4,10 +4,12 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string_view>
@@ -19,6 +21,7 @@
 #include "broadmark/plugin.h"
 #include "broadmark/scenes/engine_plugin.h"
 #include "broadmark/scenes/simulation.h"
+#include "request/c_plugin.h"
 #include "request/cases.h"
 #include "request/plugin_guard.h"
 
@@ -71,20 +74,22 @@ void* load(const std::string& name_or_path) {
   if (library == nullptr) {
     throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, loaderError(path)));
   }
-  if (::dlsym(library, kAlgorithmPluginSymbol) == nullptr &&
-      ::dlsym(library, scenes::kEnginePluginSymbol) == nullptr) {
-    throw InputError(fmt::format(
-        "--plugin: {}: exports neither '{}' nor '{}': a library with BROADMARK_PLUGIN or "
-        "BROADMARK_ENGINE_PLUGIN is expected",
-        file, kAlgorithmPluginSymbol, scenes::kEnginePluginSymbol));
+  const char* const symbols[] = {kAlgorithmPluginSymbol, scenes::kEnginePluginSymbol,
+                                 kCPluginSymbol};
+  if (std::ranges::none_of(
+          symbols, [&](const char* symbol) { return ::dlsym(library, symbol) != nullptr; })) {
+    throw InputError(
+        fmt::format("--plugin: {}: exports none of '{}': a library with BROADMARK_PLUGIN, "
+                    "BROADMARK_ENGINE_PLUGIN or the function of broadmark_plugin.h is expected",
+                    file, fmt::join(symbols, "', '")));
   }
   return library;
 }
 
-/// Returns the library's export with this name, or null.
+/// Returns a library's export with this name, or null. `file` is for messages.
 template <class Entry>
-const Plugin<Entry>* exportOf(const std::string& file, const char* symbol) {
-  const auto* plugin = static_cast<const Plugin<Entry>*>(::dlsym(load(file), symbol));
+const Plugin<Entry>* exportOf(void* library, const std::string& file, const char* symbol) {
+  const auto* plugin = static_cast<const Plugin<Entry>*>(::dlsym(library, symbol));
   if (plugin != nullptr && std::string_view(plugin->interface) != kPluginInterface) {
     throw InputError(fmt::format("--plugin: {}: built for Broadmark {}, this is {}: build it again",
                                  file, plugin->interface, kPluginInterface));
@@ -168,28 +173,46 @@ void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
   }
 }
 
-PluginBuild buildOf(const Plugin<Algorithm>& plugin, const std::string& file) {
+std::string hashOf(const std::string& file) {
   Hasher hasher;
   const std::string bytes = readTextFile(pluginFile(file));
   hasher.add(std::as_bytes(std::span(bytes)));
-  return {.hash = hasher.hex(),
-          .flags = plugin.build == nullptr ? "" : plugin.build,
-          .unoptimised = !plugin.optimised};
+  return hasher.hex();
 }
 
-/// Calls add(entry) for each entry of a plug-in. Throws InputError if it has none.
-template <class Entry, class Add>
-void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, std::string_view kind,
-                  Add add) {
+/// The entries of a plug-in. Throws InputError if it has none.
+template <class Entry>
+std::vector<Entry> entriesOf(const Plugin<Entry>& plugin, const std::string& file,
+                             std::string_view kind) {
   try {
     std::vector<Entry> entries = plugin.entries();
-    if (entries.empty()) throw InputError(fmt::format("--plugin: {}: has no {}s", file, kind));
-    for (Entry& entry : entries) add(entry);
-  } catch (const InputError&) {
-    throw;
+    if (!entries.empty()) return entries;
   } catch (const std::exception& error) {
     throw InputError(fmt::format("--plugin: {}: {}", file, error.what()));
   }
+  throw InputError(fmt::format("--plugin: {}: has no {}s", file, kind));
+}
+
+/// The algorithms that a library exports through either interface; it may have engines instead.
+std::vector<Algorithm> exportedAlgorithms(const std::string& file) {
+  void* const library = load(file);
+  std::vector<Algorithm> algorithms;
+  PluginBuild build;
+  if (const auto* plugin = exportOf<Algorithm>(library, file, kAlgorithmPluginSymbol)) {
+    algorithms = entriesOf(*plugin, file, "algorithm");
+    build = {.flags = plugin->build == nullptr ? "" : plugin->build,
+             .unoptimised = !plugin->optimised};
+  }
+  if (void* const function = ::dlsym(library, kCPluginSymbol)) {
+    const auto table = reinterpret_cast<decltype(&broadmark_c_plugin)>(function);
+    std::ranges::move(algorithmsOf(table(), file), std::back_inserter(algorithms));
+  }
+  build.hash = hashOf(file);
+  for (Algorithm& algorithm : algorithms) {
+    algorithm.plugin = file;
+    algorithm.plugin_build = build;
+  }
+  return algorithms;
 }
 
 }  // namespace
@@ -205,20 +228,15 @@ std::vector<SdkPlugin> sdkPlugins() {
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
   std::vector<Algorithm> algorithms = builtinAlgorithms();
   for (const std::string& file : plugins) {
-    const auto* plugin = exportOf<Algorithm>(file, kAlgorithmPluginSymbol);
-    if (plugin == nullptr) continue;
-    const PluginBuild build = buildOf(*plugin, file);
     constexpr std::string_view kKind = "algorithm";
-    forEachEntry(*plugin, file, kKind, [&](Algorithm& algorithm) {
+    for (Algorithm& algorithm : exportedAlgorithms(file)) {
       const Algorithm* other = findAlgorithm(algorithm.id, algorithms);
       const auto instance = instanceOf(file, kKind, algorithm.id, algorithm.create);
       requireValid(file, kKind, algorithm.id, instance != nullptr,
                    other == nullptr ? nullptr : &other->plugin);
       requireValidParameters(file, kKind, algorithm.id, *instance);
-      algorithm.plugin = file;
-      algorithm.plugin_build = build;
       algorithms.push_back(std::move(algorithm));
-    });
+    }
   }
   return algorithms;
 }
@@ -226,13 +244,14 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
 void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds) {
   if (!plugins.empty()) guardEngines(limit_seconds);
   for (const std::string& file : plugins) {
-    const auto* plugin = exportOf<scenes::EngineEntry>(file, scenes::kEnginePluginSymbol);
+    const auto* plugin =
+        exportOf<scenes::EngineEntry>(load(file), file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;
-    forEachEntry(*plugin, file, "engine", [&](scenes::EngineEntry& engine) {
+    for (scenes::EngineEntry& engine : entriesOf(*plugin, file, "engine")) {
       requireValid(engine, file);
       engine.listing.plugin = file;
       scenes::addEngine(std::move(engine));
-    });
+    }
   }
 }
 
