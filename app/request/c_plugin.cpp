@@ -23,6 +23,8 @@ using Table = std::shared_ptr<const broadmark_algorithm>;
 
 std::string textOf(const char* text) { return text == nullptr ? "" : text; }
 
+std::string statedOf(const char* text) { return text == nullptr ? "not stated" : text; }
+
 PairRun pairsOf(const broadmark_pairs& pairs) {
   return {reinterpret_cast<const Pair*>(pairs.pairs), pairs.count};
 }
@@ -197,7 +199,11 @@ std::vector<Algorithm> algorithmsOf(const broadmark_plugin* plugin, const std::s
                           .family = textOf(table->family),
                           .summary = textOf(table->summary),
                           .traits = traitsOf(*table),
-                          .description = {},
+                          .description = {.principle = statedOf(table->principle),
+                                          .optimisations = "",
+                                          .time = statedOf(table->time),
+                                          .space = statedOf(table->space),
+                                          .source = statedOf(table->source)},
                           .create = [table] { return std::make_unique<CBroadPhase>(table); }});
   }
   return algorithms;

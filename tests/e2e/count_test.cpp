@@ -14,6 +14,7 @@ bool hasValgrind() { return std::system("valgrind --version > /dev/null 2>&1") =
 class CountedInstructions : public EndToEnd {
  protected:
   void SetUp() override {
+    if (kSanitized) GTEST_SKIP() << "valgrind and sanitizers exclude each other";
     if (!ProcessorCounters::countInstructions() && !hasValgrind()) {
       GTEST_SKIP() << "neither the processor's counters nor valgrind are available";
     }

@@ -105,7 +105,12 @@ enum {
 typedef struct broadmark_algorithm {
   const char* id;      /* "my-sweep": lower-case letters, digits and -_. */
   const char* family;  /* "My Sweep" */
-  const char* summary; /* one sentence, for lists */
+  const char* summary; /* one sentence */
+  /* Optional, for lists: "sorting", "O(n + k)" twice, "Ericson 2005, 7.5". */
+  const char* principle;
+  const char* time;
+  const char* space;
+  const char* source;
   uint32_t traits;
   uint32_t max_bodies; /* 0: any number */
   const broadmark_parameter* parameters;
