@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "benchmarks/library_benchmark.h"
 #include "broadmark/broadphase.hpp"
 #include "broadmark/change_detector.h"
+#include "broadmark/statistics/statistics.h"
 #include "columns.h"
 #include "tide.h"
 #include "torture/inputs.h"
@@ -22,7 +22,7 @@
 namespace {
 
 using namespace broadmark;
-namespace bp = broadmark::broadphase;
+using namespace broadmark::benchmarks;
 
 /// The library's class, or an algorithm; each with the name and times of its frames.
 struct Contestant {
@@ -78,28 +78,14 @@ void measure(std::size_t bodies, double moving, bool events, int rounds) {
   std::vector<double> detection;
   inputs::Random random(2, 0);
   for (int round = 0; round < rounds + 3; ++round) {
-    const auto movers = static_cast<std::size_t>(moving * static_cast<double>(bodies));
-    for (std::size_t i = 0; i < movers; ++i) {
-      Aabb& box =
-          boxes[movers == bodies
-                    ? i
-                    : static_cast<std::size_t>(random.integer(0, static_cast<int>(bodies) - 1))];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float step = random.uniform(-0.1F, 0.1F);
-        box.min[axis] += step;
-        box.max[axis] += step;
-      }
-    }
+    moveShare(boxes, moving, random);
     for (std::size_t i = 0; i < bodies; ++i) {
       std::copy_n(boxes[i].min.begin(), 3, given[i].min);
       std::copy_n(boxes[i].max.begin(), 3, given[i].max);
     }
     const auto time = [&](const auto& call, std::vector<double>& times) {
-      const auto begin = std::chrono::steady_clock::now();
-      call();
-      const std::chrono::duration<double, std::micro> span =
-          std::chrono::steady_clock::now() - begin;
-      if (round >= 3) times.push_back(span.count());
+      const double microseconds = nanosecondsOf(call) / 1000;
+      if (round >= 3) times.push_back(microseconds);
     };
     const auto index = static_cast<std::uint32_t>(round + 1);
     time([&] { frame = detector.complete({index, boxes}); }, detection);
@@ -108,13 +94,10 @@ void measure(std::size_t bodies, double moving, bool events, int rounds) {
     }
   }
   // What disturbs a frame only makes it slower.
-  const auto quickest = [](std::vector<double>& values) {
-    std::ranges::sort(values);
-    return values[values.size() / 10];
-  };
+  const auto quickest = [](const std::vector<double>& values) { return quantile(values, 0.1); };
   fmt::print("{} bodies, {:g} % move, {}: changes {:.1f} us", bodies, 100 * moving,
              events ? "events" : "pairs", quickest(detection));
-  for (Contestant& contestant : all) {
+  for (const Contestant& contestant : all) {
     fmt::print("; {} {:.1f}", contestant.name, quickest(contestant.microseconds));
   }
   fmt::print("\n");
@@ -123,14 +106,12 @@ void measure(std::size_t bodies, double moving, bool events, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 101;
-  std::vector<std::size_t> sizes;
-  for (int i = 2; i < argc; ++i) sizes.push_back(static_cast<std::size_t>(std::atoi(argv[i])));
-  if (sizes.empty()) sizes = {1000, 8000, 128'000};
-  for (const std::size_t bodies : sizes) {
+  const LibraryArguments arguments(argc, argv, 1, {1000, 8000, 128'000});
+  for (const std::size_t bodies : arguments.sizes) {
     for (const bool events : {false, true}) {
-      for (const double moving : {0.0, 0.01, 0.1, 1.0}) measure(bodies, moving, events, rounds);
+      for (const double moving : {0.0, 0.01, 0.1, 1.0}) {
+        measure(bodies, moving, events, arguments.rounds);
+      }
     }
   }
 }

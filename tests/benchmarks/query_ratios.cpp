@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
@@ -34,44 +32,15 @@
 #endif
 #endif
 
+#include "benchmarks/library_benchmark.h"
 #include "broadmark/broadphase.hpp"
+#include "broadmark/statistics/statistics.h"
 #include "torture/inputs.h"
 
 namespace {
 
 using namespace broadmark;
-namespace bp = broadmark::broadphase;
-
-struct Batch {
-  std::vector<bp::BoxQuery> boxes;
-  std::vector<bp::Cast> rays;
-  std::vector<bp::NearestQuery> points;
-};
-
-/// Boxes of eight times a body's volume, rays across the world, the eight nearest bodies.
-Batch batchIn(std::size_t bodies, std::size_t count, std::uint64_t seed) {
-  const float side = inputs::cubeRoot(10.0 * static_cast<double>(bodies));
-  inputs::Random random(seed, 0);
-  Batch batch;
-  for (std::size_t i = 0; i < count; ++i) {
-    const inputs::Vec3 from = random.inCube(side);
-    const inputs::Vec3 to = random.inCube(side);
-    bp::BoxQuery box;
-    bp::Cast ray;
-    bp::NearestQuery point;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.box.min[axis] = from[axis];
-      box.box.max[axis] = from[axis] + 2;
-      ray.box.min[axis] = ray.box.max[axis] = point.point[axis] = from[axis];
-      ray.direction[axis] = to[axis] - from[axis];
-    }
-    point.count = 8;
-    batch.boxes.push_back(box);
-    batch.rays.push_back(ray);
-    batch.points.push_back(point);
-  }
-  return batch;
-}
+using namespace broadmark::benchmarks;
 
 /// Answers a batch, and returns how much it found; all contestants of a kind find the same.
 using Answer = std::function<double(const Batch&)>;
@@ -85,7 +54,7 @@ struct Contestant {
 
 void addLibrary(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
   const auto object = std::make_shared<bp::BroadPhase>();
-  object->update(bp::Boxes(boxes[0].min.data(), boxes[0].max.data(), boxes.size(), sizeof(Aabb)));
+  object->update(viewOf(boxes));
   const auto bodies = std::make_shared<bp::QueryResults<std::uint32_t>>();
   const auto hits = std::make_shared<bp::QueryResults<bp::CastHit>>();
   const auto neighbours = std::make_shared<bp::QueryResults<bp::Neighbour>>();
@@ -242,15 +211,8 @@ void addEmbree(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
     auto& [ray, hit] = *reinterpret_cast<RTCRayHit*>(of->rayhit);
     const float from[] = {ray.org_x, ray.org_y, ray.org_z};
     const float direction[] = {ray.dir_x, ray.dir_y, ray.dir_z};
-    float enters = ray.tnear;
-    float leaves = ray.tfar;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float a = (box.min[axis] - from[axis]) / direction[axis];
-      const float b = (box.max[axis] - from[axis]) / direction[axis];
-      enters = std::max(enters, std::min(a, b));
-      leaves = std::min(leaves, std::max(a, b));
-    }
-    if (enters > leaves) return;
+    const float enters = entryOf(box, from, direction, ray.tnear, ray.tfar);
+    if (enters > ray.tfar) return;
     ray.tfar = enters;
     hit.geomID = of->geomID;
     hit.primID = of->primID;
@@ -280,16 +242,7 @@ void addEmbree(const std::vector<Aabb>& boxes, std::vector<Contestant>& all) {
 }
 #endif
 
-double quantile10(std::vector<double>& values) {
-  std::ranges::sort(values);
-  return values[values.size() / 10];
-}
-
-double nanosecondsOf(const std::function<void()>& call) {
-  const auto begin = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count();
-}
+double quickest(const std::vector<double>& values) { return quantile(values, 0.1); }
 
 void measureQueries(std::size_t bodies, int rounds) {
   constexpr std::size_t kQueries = 1000;
@@ -320,9 +273,9 @@ void measureQueries(std::size_t bodies, int rounds) {
   double ours = 0;
   for (const char* kind : {"boxes", "rays, all hits", "rays, closest", "8 nearest"}) {
     fmt::print("{} bodies, {}:", bodies, kind);
-    for (Contestant& contestant : all) {
+    for (const Contestant& contestant : all) {
       if (contestant.kind != kind) continue;
-      const double ns = quantile10(contestant.nanoseconds);
+      const double ns = quickest(contestant.nanoseconds);
       if (contestant.name == "broadmark") ours = ns;
       fmt::print("  {} {:.0f} ns", contestant.name, ns);
       if (contestant.name != "broadmark") fmt::print(" ({:.2f})", ns / ours);
@@ -335,7 +288,7 @@ void measureQueries(std::size_t bodies, int rounds) {
 /// edge.
 void measureTree(std::size_t bodies, int rounds) {
   std::vector<Aabb> boxes = inputs::uniform(bodies, 0, 1);
-  const bp::Boxes view(boxes[0].min.data(), boxes[0].max.data(), bodies, sizeof(Aabb));
+  const bp::Boxes view = viewOf(boxes);
   bp::QueryResults<std::uint32_t> none;
   std::vector<double> builds;
   for (int round = 0; round < std::min(rounds, 11); ++round) {
@@ -343,31 +296,20 @@ void measureTree(std::size_t bodies, int rounds) {
     object.update(view);
     builds.push_back(nanosecondsOf([&] { object.overlapping({}, none); }));
   }
-  fmt::print("{} bodies, tree: built in {:.0f} us", bodies, quantile10(builds) / 1000);
+  fmt::print("{} bodies, tree: built in {:.0f} us", bodies, quickest(builds) / 1000);
   inputs::Random random(2, 0);
   for (const double moving : {0.01, 0.1, 1.0}) {
     bp::BroadPhase object;
     std::vector<double> refits;
-    const auto movers = static_cast<std::size_t>(moving * static_cast<double>(bodies));
     for (int round = 0; round < rounds; ++round) {
-      for (std::size_t i = 0; i < movers; ++i) {
-        Aabb& box =
-            boxes[movers == bodies
-                      ? i
-                      : static_cast<std::size_t>(random.integer(0, static_cast<int>(bodies) - 1))];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const float step = random.uniform(-0.1F, 0.1F);
-          box.min[axis] += step;
-          box.max[axis] += step;
-        }
-      }
+      moveShare(boxes, moving, random);
       object.update(view);
       refits.push_back(nanosecondsOf([&] { object.overlapping({}, none); }));
     }
     double sum = 0;
     for (const double ns : refits) sum += ns;
     const double mean = (sum - refits[0]) / static_cast<double>(refits.size() - 1);
-    fmt::print("; {:g} % move: {:.1f} us, mean {:.1f}", 100 * moving, quantile10(refits) / 1000,
+    fmt::print("; {:g} % move: {:.1f} us, mean {:.1f}", 100 * moving, quickest(refits) / 1000,
                mean / 1000);
   }
   fmt::print("\n");
@@ -376,13 +318,9 @@ void measureTree(std::size_t bodies, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const int rounds = argc > 1 ? std::max(2, std::atoi(argv[1])) : 101;
-  std::vector<std::size_t> sizes;
-  for (int i = 2; i < argc; ++i) sizes.push_back(static_cast<std::size_t>(std::atoi(argv[i])));
-  if (sizes.empty()) sizes = {1000, 10'000, 100'000};
-  for (const std::size_t bodies : sizes) {
-    measureQueries(bodies, rounds);
-    measureTree(bodies, rounds);
+  const LibraryArguments arguments(argc, argv, 2, {1000, 10'000, 100'000});
+  for (const std::size_t bodies : arguments.sizes) {
+    measureQueries(bodies, arguments.rounds);
+    measureTree(bodies, arguments.rounds);
   }
 }
