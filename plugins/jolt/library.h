@@ -1,4 +1,4 @@
-// Initialises Jolt for both parts of the plug-in.
+// Initialises Jolt for both parts of the plug-in, and for benchmarks.
 #pragma once
 
 #include <Jolt/Jolt.h>

@@ -3,101 +3,23 @@
 // the enlarged part of the trees and then queries them with every active body. O(m + n log n) time
 // for m moved bodies, O(n) space.
 //
-// The calls and their order are those of PhysicsSystem::Update(), the only documented use: queries
-// by workers in batches of sixteen bodies, and Optimize() after adding all bodies ("Architecture of
-// Jolt Physics", Broad Phase). As recommended there, each of our layers is an object layer and a
-// broad-phase layer, so that non-colliding layers are separate. The speculative contact distance,
-// which only the solver uses, is 0. The answer is exact: the last test uses the body's own box.
-//
-// Jolt takes a body's box from its shape, so the shapes here only return the current box.
+// As "Architecture of Jolt Physics" recommends, each of our layers is an object layer and a
+// broad-phase layer, so that non-colliding layers are separate. The answer is exact: the last test
+// uses the body's own box.
 //
 // Library: Jolt Physics 5, J. Rouwe.
 
-#include "broadmark/plugin.h"
-#include "jolt/library.h"
-// Jolt's headers must follow the header above.
-#include <Jolt/Physics/Body/BodyCreationSettings.h>
-#include <Jolt/Physics/Body/BodyManager.h>
-#include <Jolt/Physics/Body/BodyPair.h>
-#include <Jolt/Physics/Collision/BroadPhase/BroadPhaseQuadTree.h>
-#include <Jolt/Physics/Collision/Shape/Shape.h>
-#include <Jolt/Physics/Collision/ShapeCast.h>
-
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "broadmark/plugin.h"
+#include "jolt/tree_bodies.h"
+
 namespace broadmark::jolt_quad_tree {
 namespace {
-
-/// The number of bodies per batch of queries: PhysicsSystem's cActiveBodiesBatchSize.
-constexpr std::size_t kBatch = 16;
-
-JPH::Vec3 vectorOf(const std::array<float, 4>& corner) { return {corner[0], corner[1], corner[2]}; }
-
-/// A shape that is the world-space box of its body.
-class BodyBox final : public JPH::Shape {
- public:
-  /// `box` is not owned.
-  explicit BodyBox(const Aabb& box)
-      : Shape(JPH::EShapeType::User1, JPH::EShapeSubType::User1), box_(&box) {
-    SetEmbedded();
-  }
-
-  JPH::AABox GetWorldSpaceBounds(JPH::Mat44Arg, JPH::Vec3Arg) const override {
-    return {vectorOf(box_->min), vectorOf(box_->max)};
-  }
-  JPH::AABox GetLocalBounds() const override { return {JPH::Vec3::sZero(), JPH::Vec3::sZero()}; }
-
-  // The broad phase uses none of the functions below.
-  JPH::uint GetSubShapeIDBitsRecursive() const override { return 0; }
-  float GetInnerRadius() const override { return 0; }
-  JPH::MassProperties GetMassProperties() const override { return {}; }
-  const JPH::PhysicsMaterial* GetMaterial(const JPH::SubShapeID&) const override { return nullptr; }
-  JPH::Vec3 GetSurfaceNormal(const JPH::SubShapeID&, JPH::Vec3Arg) const override {
-    return JPH::Vec3::sAxisY();
-  }
-  void GetSubmergedVolume(JPH::Mat44Arg, JPH::Vec3Arg, const JPH::Plane&, float& total,
-                          float& submerged, JPH::Vec3& centre
-#ifdef JPH_DEBUG_RENDERER
-                          ,
-                          JPH::RVec3Arg
-#endif
-  ) const override {
-    total = submerged = 0;
-    centre = JPH::Vec3::sZero();
-  }
-#ifdef JPH_DEBUG_RENDERER
-  void Draw(JPH::DebugRenderer*, JPH::RMat44Arg, JPH::Vec3Arg, JPH::ColorArg, bool,
-            bool) const override {}
-#endif
-  bool CastRay(const JPH::RayCast&, const JPH::SubShapeIDCreator&,
-               JPH::RayCastResult&) const override {
-    return false;
-  }
-  void CastRay(const JPH::RayCast&, const JPH::RayCastSettings&, const JPH::SubShapeIDCreator&,
-               JPH::CastRayCollector&, const JPH::ShapeFilter&) const override {}
-  void CollidePoint(JPH::Vec3Arg, const JPH::SubShapeIDCreator&, JPH::CollidePointCollector&,
-                    const JPH::ShapeFilter&) const override {}
-  void CollideSoftBodyVertices(JPH::Mat44Arg, JPH::Vec3Arg,
-                               const JPH::CollideSoftBodyVertexIterator&, JPH::uint,
-                               int) const override {}
-  void GetTrianglesStart(GetTrianglesContext&, const JPH::AABox&, JPH::Vec3Arg, JPH::QuatArg,
-                         JPH::Vec3Arg) const override {}
-  int GetTrianglesNext(GetTrianglesContext&, int, JPH::Float3*,
-                       const JPH::PhysicsMaterial**) const override {
-    return 0;
-  }
-  Stats GetStats() const override { return {sizeof(*this), 0}; }
-  float GetVolume() const override { return 0; }
-
- private:
-  const Aabb* box_;
-};
 
 /// The layer matrix for Jolt. Each of our layers is an object layer and a broad-phase layer.
 class Layers final : public JPH::BroadPhaseLayerInterface,
@@ -147,36 +69,20 @@ class Pairs final : public JPH::BodyPairCollector {
 
 class QuadTree final : public BoxBroadPhase {
  public:
-  QuadTree() = default;
-  QuadTree(const QuadTree&) = delete;
-  QuadTree& operator=(const QuadTree&) = delete;
-  ~QuadTree() override {
-    if (layers_ == nullptr) return;
-    std::vector<JPH::BodyID> present;
-    for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
-      if (isInTree(body)) present.push_back(bodies_[body]->GetID());
-    }
-    removeBodies(present);
-    std::vector<JPH::BodyID> all;
-    for (const JPH::Body* body : bodies_) all.push_back(body->GetID());
-    if (!all.empty()) manager_.DestroyBodies(all.data(), static_cast<int>(all.size()));
-  }
-
   void initialize(const SceneInfo& scene, const Frame& first,
                   ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     filter_ = scene.filter;
     layers_ = std::make_unique<Layers>(scene);
-    manager_.Init(static_cast<JPH::uint>(std::max<std::size_t>(boxes().size(), 1)), 0, *layers_);
-    trees_.Init(&manager_, *layers_);
-    for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
-    added_.clear();
-    for (const std::uint32_t body : first.presentBodies()) {
-      bodies_[body]->CalculateWorldSpaceBoundsInternal();
-      added_.push_back(bodies_[body]->GetID());
+    bodies_.initialize(boxes().size(), *layers_);
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+      bodies_.create(boxes()[body], layerOf(body));
     }
-    addBodies(added_);
-    trees_.Optimize();
+    added_.clear();
+    for (const std::uint32_t body : first.presentBodies()) added_.push_back(bodies_.idOf(body));
+    for (const JPH::BodyID id : added_) bodies_.updateBounds(id);
+    bodies_.add(added_);
+    bodies_.trees().Optimize();
   }
 
   void updateObjects(const Frame& frame) override {
@@ -186,28 +92,24 @@ class QuadTree final : public BoxBroadPhase {
     removed_.clear();
     for (const std::uint32_t body : *frame.changed) {
       const bool is_present = !isEmpty(boxes()[body]);
-      if (!is_present && !isInTree(body)) continue;
-      const JPH::BodyID id = bodies_[body]->GetID();
-      if (!isInTree(body)) {  // its layer may have changed
-        manager_.SetBodyObjectLayerInternal(*bodies_[body],
-                                            static_cast<JPH::ObjectLayer>(filter_.layerOf(body)));
-      }
-      (!is_present ? removed_ : !isInTree(body) ? added_ : moved_).push_back(id);
+      const bool was_present = bodies_.isInTree(body);
+      if (!is_present && !was_present) continue;
+      if (!was_present) bodies_.setLayer(body, layerOf(body));  // it may have changed
+      (!is_present ? removed_ : !was_present ? added_ : moved_).push_back(bodies_.idOf(body));
     }
   }
 
   void updateStructures() override {
-    removeBodies(removed_);
+    bodies_.remove(removed_);
     updateBounds(added_);
-    addBodies(added_);
-    trees_.LockModifications();
+    bodies_.add(added_);
+    bodies_.trees().LockModifications();
     updateBounds(moved_);
-    notifyMoved();
-    trees_.UnlockModifications();
-    trees_.FrameSync();
-    trees_.LockModifications();
-    trees_.UpdateFinalize(trees_.UpdatePrepare());
-    trees_.UnlockModifications();
+    team().run(moved_.size(), [&](int, Range part) {
+      bodies_.notifyMoved(moved_.data() + part.begin, part.size());
+    });
+    bodies_.trees().UnlockModifications();
+    bodies_.rebuild();
   }
 
   void visitCounters(const CounterVisitor& visit) const override {
@@ -218,82 +120,38 @@ class QuadTree final : public BoxBroadPhase {
 
   [[nodiscard]] std::string validate() const override {
     for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
-      if (isInTree(body) == isEmpty(boxes()[body]))
+      if (bodies_.isInTree(body) == isEmpty(boxes()[body]))
         return "a tree missed a body that appeared or disappeared";
     }
     return {};
   }
 
  private:
-  using Ids = std::vector<JPH::BodyID>;
+  using Ids = JoltTreeBodies::Ids;
 
-  [[nodiscard]] bool isInTree(std::uint32_t body) const { return bodies_[body]->IsInBroadPhase(); }
-
-  void create(std::uint32_t body) {
-    shapes_.emplace_back(boxes()[body]);
-    JPH::BodyCreationSettings settings(&shapes_.back(), JPH::RVec3::sZero(), JPH::Quat::sIdentity(),
-                                       JPH::EMotionType::Dynamic,
-                                       static_cast<JPH::ObjectLayer>(filter_.layerOf(body)));
-    settings.mOverrideMassProperties = JPH::EOverrideMassProperties::MassAndInertiaProvided;
-    settings.mMassPropertiesOverride = {1, JPH::Mat44::sIdentity()};
-    bodies_.push_back(manager_.AllocateBody(settings));
-    manager_.AddBodyWithCustomID(bodies_.back(), JPH::BodyID(body, 1));
-  }
-
-  /// May reorder the ids.
-  void addBodies(Ids& ids) {
-    if (ids.empty()) return;
-    const int count = static_cast<int>(ids.size());
-    trees_.AddBodiesFinalize(ids.data(), count, trees_.AddBodiesPrepare(ids.data(), count));
-    manager_.ActivateBodies(ids.data(), count);
-  }
-  void removeBodies(Ids& ids) {
-    if (ids.empty()) return;
-    const int count = static_cast<int>(ids.size());
-    manager_.DeactivateBodies(ids.data(), count);
-    trees_.RemoveBodies(ids.data(), count);
+  [[nodiscard]] JPH::ObjectLayer layerOf(std::uint32_t body) const {
+    return static_cast<JPH::ObjectLayer>(filter_.layerOf(body));
   }
 
   void updateBounds(const Ids& ids) {
     team().run(ids.size(), [&](int, Range part) {
-      for (std::size_t i = part.begin; i < part.end; ++i) {
-        bodies_[ids[i].GetIndex()]->CalculateWorldSpaceBoundsInternal();
-      }
-    });
-  }
-
-  void notifyMoved() {
-    team().run(moved_.size(), [&](int, Range part) {
-      if (part.size() == 0) return;
-      trees_.NotifyBodiesAABBChanged(moved_.data() + part.begin, static_cast<int>(part.size()),
-                                     false);
+      for (std::size_t i = part.begin; i < part.end; ++i) bodies_.updateBounds(ids[i]);
     });
   }
 
   void findPairs() override {
-    const JPH::BodyID* const active = manager_.GetActiveBodiesUnsafe(JPH::EBodyType::RigidBody);
-    const std::size_t count = manager_.GetNumActiveBodies(JPH::EBodyType::RigidBody);
     const bool only_layers = filter_.worlds().empty() && filter_.tags().empty();
     std::atomic<std::size_t> next = 0;
     team().run([&](int worker) {
       Pairs found(pairs(worker), only_layers ? nullptr : &filter_);
-      std::array<JPH::BodyID, kBatch> batch;
-      for (std::size_t begin; (begin = next.fetch_add(kBatch)) < count;) {
-        const std::size_t size = std::min(kBatch, count - begin);
-        std::copy_n(active + begin, size, batch.begin());
-        trees_.FindCollidingPairs(batch.data(), static_cast<int>(size), 0, *layers_, *layers_,
-                                  found);
-      }
+      bodies_.findPairs(*layers_, next, found);
     });
   }
 
   JoltLibrary library_;
   CollisionFilter filter_;
   std::unique_ptr<Layers> layers_;
-  std::deque<BodyBox> shapes_;  ///< by body
-  JPH::BodyManager manager_;
-  JPH::BroadPhaseQuadTree trees_;
-  std::vector<JPH::Body*> bodies_;  ///< owned by manager_
+  JoltTreeBodies bodies_;
   // Of the current frame.
   Ids moved_;
   Ids added_;
