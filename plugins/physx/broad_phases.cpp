@@ -83,8 +83,8 @@ class PhysXThreads {
     const char* getName() const override { return "completion"; }
   };
 
-  std::unique_ptr<physx::PxDefaultCpuDispatcher, ReleasePhysX> dispatcher_;
-  std::unique_ptr<physx::PxTaskManager, ReleasePhysX> tasks_;
+  PhysXPtr<physx::PxDefaultCpuDispatcher> dispatcher_;
+  PhysXPtr<physx::PxTaskManager> tasks_;
 };
 
 class PhysX final : public BroadPhase {
@@ -297,7 +297,7 @@ class PhysX final : public BroadPhase {
   CollisionFilter filter_;
   NonCollidingLayers static_layers_;
   ThreadTeam* team_ = nullptr;
-  std::unique_ptr<physx::PxBroadPhase, ReleasePhysX> broad_phase_;
+  PhysXPtr<physx::PxBroadPhase> broad_phase_;
   std::optional<PhysXThreads> threads_;
   std::optional<RegionLoads> loads_;  ///< only for MBP
   // By body, with an extra entry.

@@ -1,8 +1,9 @@
-// Initialises PhysX for both parts of the plug-in.
+// Initialises PhysX for both parts of the plug-in, and for benchmarks.
 #pragma once
 
 #include <PxPhysicsAPI.h>
 
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -19,6 +20,8 @@ struct ReleasePhysX {
     object->release();
   }
 };
+template <class Object>
+using PhysXPtr = std::unique_ptr<Object, ReleasePhysX>;
 
 /// Stores PhysX's errors, because PhysX continues after most of them with incomplete results.
 class PhysXErrors final : public physx::PxErrorCallback {
@@ -57,6 +60,14 @@ inline physx::PxFoundation& physXFoundation() {
   if (foundation == nullptr)
     throw UnsupportedError("PhysX: the library does not match its headers");
   return *foundation;
+}
+
+/// PhysX's factory, a singleton that is never released.
+inline physx::PxPhysics& physXFactory() {
+  static physx::PxPhysics* const physics =
+      PxCreatePhysics(PX_PHYSICS_VERSION, physXFoundation(), physx::PxTolerancesScale());
+  if (physics == nullptr) throw UnsupportedError("PhysX: cannot create the physics object");
+  return *physics;
 }
 
 }  // namespace broadmark

@@ -35,17 +35,6 @@ constexpr float kContactOffset = 0.1F;
 /// tunnel through walls. PhysX's default is based on the shapes' sizes, which are huge for walls.
 constexpr float kCcdThreshold = 0.4F;
 
-template <class Object>
-using PhysXPtr = std::unique_ptr<Object, ReleasePhysX>;
-
-/// PhysX's factory, a singleton that is never released.
-physx::PxPhysics& factory() {
-  static physx::PxPhysics* const physics =
-      PxCreatePhysics(PX_PHYSICS_VERSION, physXFoundation(), physx::PxTolerancesScale());
-  if (physics == nullptr) throw UnsupportedError("PhysX: cannot create the physics object");
-  return *physics;
-}
-
 physx::PxVec3 toPhysX(const Vec3& v) { return {v[0], v[1], v[2]}; }
 Vec3 fromPhysX(const physx::PxVec3& v) { return {v.x, v.y, v.z}; }
 physx::PxTransform toPhysX(const Pose& pose) {
@@ -78,7 +67,7 @@ class PhysXBody : public PhysicsBody {
   PhysXBody(const BodyDescription& description, const PhysicsSettings& settings,
             physx::PxScene& scene, physx::PxMaterial& material, std::uint32_t mask)
       : shape_(description.shape), scene_(scene) {
-    actor_.reset(factory().createRigidDynamic(toPhysX(description.pose)));
+    actor_.reset(physXFactory().createRigidDynamic(toPhysX(description.pose)));
     physx::PxShape* const shape = std::visit(
         [&](const auto& kind) {
           return physx::PxRigidActorExt::createExclusiveShape(*actor_, geometryOf(kind), material);
@@ -145,8 +134,8 @@ class PhysXBody : public PhysicsBody {
 class PhysXEngine final : public PhysicsEngine {
  public:
   explicit PhysXEngine(const PhysicsSettings& settings)
-      : settings_(settings), dispatcher_((factory(), physx::PxDefaultCpuDispatcherCreate(0))) {
-    physx::PxSceneDesc description(factory().getTolerancesScale());
+      : settings_(settings), dispatcher_((physXFactory(), physx::PxDefaultCpuDispatcherCreate(0))) {
+    physx::PxSceneDesc description(physXFactory().getTolerancesScale());
     description.cpuDispatcher = dispatcher_.get();
     description.filterShader = filterCollision;
     description.bounceThresholdVelocity = kMinBounceSpeed;
@@ -154,11 +143,11 @@ class PhysXEngine final : public PhysicsEngine {
     description.flags |= physx::PxSceneFlag::eENABLE_ENHANCED_DETERMINISM;
     description.flags |= physx::PxSceneFlag::eENABLE_CCD;
     description.ccdThreshold = kCcdThreshold;
-    scene_.reset(factory().createScene(description));
+    scene_.reset(physXFactory().createScene(description));
     if (!scene_) throw UnsupportedError("PhysX: cannot create a scene");
     const auto friction = static_cast<float>(settings.friction);
-    material_.reset(
-        factory().createMaterial(friction, friction, static_cast<float>(settings.restitution)));
+    material_.reset(physXFactory().createMaterial(friction, friction,
+                                                  static_cast<float>(settings.restitution)));
   }
 
   void setLayers(const LayerMatrix& layers) override { layers_ = layers; }
@@ -176,7 +165,7 @@ class PhysXEngine final : public PhysicsEngine {
     const physx::PxPlane plane(toPhysX(wall.normal), -wall.offset);
     physx::PxTransform pose = physx::PxTransformFromPlaneEquation(plane);  // x along the normal
     pose.p -= toPhysX(wall.normal) * extent;
-    physx::PxRigidStatic* const actor = factory().createRigidStatic(pose);
+    physx::PxRigidStatic* const actor = physXFactory().createRigidStatic(pose);
     physx::PxShape* const shape = physx::PxRigidActorExt::createExclusiveShape(
         *actor, physx::PxBoxGeometry(extent, extent, extent), *material_);
     shape->setContactOffset(kContactOffset);
