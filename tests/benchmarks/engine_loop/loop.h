@@ -18,7 +18,7 @@
 namespace broadmark::benchmarks {
 
 /// A step of the loop: the boxes after it, by slot (empty ones are absent), and what has changed.
-/// A slot occurs in one of the lists at most; the lists of the first step add everything.
+/// A slot occurs in one of the lists at most, and `moved` is ascending. The first step adds all.
 struct Step {
   using Slots = std::vector<std::uint32_t>;
 
