@@ -6,8 +6,9 @@
 //
 //   engine_loop_ratios [ROUNDS [BODIES...]]
 //
-// Printed: the mean times of a step, since some spread work over several steps; and the pairs that
-// an engine is given for each one that overlaps, as trees with enlarged boxes give more.
+// Printed: the mean times of a step, since some spread work over several steps, without the slowest
+// tenth of the steps, which other programs have disturbed; and the pairs that an engine is given
+// for each one that overlaps, as trees with enlarged boxes give more.
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@
 #include <memory>
 #include <numeric>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,19 +42,36 @@ namespace {
 using namespace broadmark;
 using namespace broadmark::benchmarks;
 
-struct Contestant {
-  std::string name;
-  std::unique_ptr<LoopBroadPhase> broad_phase;
-  // Sums over all measured steps.
+struct Times {
   double change_ns = 0;
   double pairs_ns = 0;
   double queries_ns = 0;
+
+  [[nodiscard]] double total() const { return change_ns + pairs_ns + queries_ns; }
+};
+
+struct Contestant {
+  std::string name;
+  std::unique_ptr<LoopBroadPhase> broad_phase;
+  std::vector<Times> steps = {};  ///< measured ones
+  // Sums over all measured steps; wrong ones over all.
   std::size_t given_pairs = 0;
   std::size_t overlapping_pairs = 0;
   std::size_t wrong_pairs = 0;
   std::size_t wrong_answers = 0;
 
-  [[nodiscard]] double total() const { return change_ns + pairs_ns + queries_ns; }
+  /// Without the slowest tenth of the steps.
+  [[nodiscard]] Times mean() {
+    std::ranges::sort(steps, {}, &Times::total);
+    const std::size_t count = steps.size() - steps.size() / 10;
+    Times mean;
+    for (const Times& step : std::span(steps).first(count)) {
+      mean.change_ns += step.change_ns / static_cast<double>(count);
+      mean.pairs_ns += step.pairs_ns / static_cast<double>(count);
+      mean.queries_ns += step.queries_ns / static_cast<double>(count);
+    }
+    return mean;
+  }
 };
 
 std::vector<Contestant> contestants() {
@@ -134,13 +153,11 @@ void measure(std::size_t bodies, double moving, int rounds) {
       Contestant& contestant = all[i];
       LoopBroadPhase& broad_phase = *contestant.broad_phase;
       answers[i].clear(batch);
-      const double change_ns = nanosecondsOf([&] { broad_phase.change(step); });
-      const double pairs_ns = nanosecondsOf([&] { broad_phase.findPairs(); });
-      const double queries_ns = nanosecondsOf([&] { broad_phase.answer(batch, answers[i]); });
-      if (round < 0) continue;
-      contestant.change_ns += change_ns;
-      contestant.pairs_ns += pairs_ns;
-      contestant.queries_ns += queries_ns;
+      Times times;
+      times.change_ns = nanosecondsOf([&] { broad_phase.change(step); });
+      times.pairs_ns = nanosecondsOf([&] { broad_phase.findPairs(); });
+      times.queries_ns = nanosecondsOf([&] { broad_phase.answer(batch, answers[i]); });
+      if (round >= 0) contestant.steps.push_back(times);
     }
     std::vector<Pair> right;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -163,12 +180,12 @@ void measure(std::size_t bodies, double moving, int rounds) {
   }
   fmt::print("{} bodies, {:g} % move: ms a step\n{:16}{:>9}{:>9}{:>9}{:>9}{:>8}{:>8}\n", bodies,
              100 * moving, "", "change", "pairs", "queries", "total", "ratio", "given");
-  for (const Contestant& contestant : all) {
-    const double steps = 1e6 * rounds;
+  const double library_ns = all[0].mean().total();
+  for (Contestant& contestant : all) {
+    const Times mean = contestant.mean();
     fmt::print("{:16}{:9.3f}{:9.3f}{:9.3f}{:9.3f}{:8.2f}{:8.2f}\n", contestant.name,
-               contestant.change_ns / steps, contestant.pairs_ns / steps,
-               contestant.queries_ns / steps, contestant.total() / steps,
-               contestant.total() / all[0].total(),
+               mean.change_ns / 1e6, mean.pairs_ns / 1e6, mean.queries_ns / 1e6, mean.total() / 1e6,
+               mean.total() / library_ns,
                static_cast<double>(contestant.given_pairs) /
                    static_cast<double>(std::max<std::size_t>(contestant.overlapping_pairs, 1)));
     if (contestant.wrong_pairs + contestant.wrong_answers > 0) {
