@@ -8,8 +8,8 @@
 
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
-#include "imports/contents.h"
-#include "imports/line_reader.h"
+#include "support/contents.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/frame.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 namespace {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "broadmark/files.h"
-#include "imports/contents.h"
+#include "support/contents.h"
 
 namespace broadmark::imports::gltf {
 namespace {

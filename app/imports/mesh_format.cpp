@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "imports/files.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "imports/contents.h"
+#include "support/contents.h"
 
 namespace broadmark::imports {
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "broadmark/error.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 #include "imports/mesh.h"
 
 namespace broadmark::imports {

@@ -14,7 +14,7 @@
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
 #include "imports/byte_reader.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 #include "imports/mesh.h"
 
 namespace broadmark::imports {

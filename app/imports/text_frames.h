@@ -13,7 +13,7 @@
 
 #include "broadmark/frame.h"
 #include "imports/import_summary.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 

@@ -23,6 +23,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "request/c_plugin.h"
 #include "request/cases.h"
+#include "request/logged_pairs.h"
 #include "request/plugin_guard.h"
 
 namespace broadmark {
@@ -193,8 +194,10 @@ std::vector<Entry> entriesOf(const Plugin<Entry>& plugin, const std::string& fil
   throw InputError(fmt::format("--plugin: {}: has no {}s", file, kind));
 }
 
-/// The algorithms that a library exports through either interface; it may have engines instead.
-std::vector<Algorithm> exportedAlgorithms(const std::string& file) {
+/// The algorithms of a pair log, or those that a library exports through either interface; it may
+/// have engines instead.
+std::vector<Algorithm> algorithmsIn(const std::string& file) {
+  if (isPairLog(file)) return {loggedPairs(file)};
   void* const library = load(file);
   std::vector<Algorithm> algorithms;
   PluginBuild build;
@@ -229,7 +232,7 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
   std::vector<Algorithm> algorithms = builtinAlgorithms();
   for (const std::string& file : plugins) {
     constexpr std::string_view kKind = "algorithm";
-    for (Algorithm& algorithm : exportedAlgorithms(file)) {
+    for (Algorithm& algorithm : algorithmsIn(file)) {
       const Algorithm* other = findAlgorithm(algorithm.id, algorithms);
       const auto instance = instanceOf(file, kKind, algorithm.id, algorithm.create);
       requireValid(file, kKind, algorithm.id, instance != nullptr,
@@ -244,6 +247,7 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
 void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds) {
   if (!plugins.empty()) guardEngines(limit_seconds);
   for (const std::string& file : plugins) {
+    if (isPairLog(file)) continue;
     const auto* plugin =
         exportOf<scenes::EngineEntry>(load(file), file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;

@@ -21,10 +21,11 @@ struct SdkPlugin {
 /// All SDK plug-ins, built or not.
 std::vector<SdkPlugin> sdkPlugins();
 
-/// Returns the built-in algorithms, then those of these libraries (see broadmark/plugin.h), which
-/// stay loaded until the program ends. Throws InputError for a file that is not such a library, was
-/// built with other headers, has no algorithm, or one with an invalid or duplicate id, two
-/// parameters with one name, or a default out of range.
+/// Returns the built-in algorithms, then those of these libraries (see broadmark/plugin.h and
+/// broadmark_plugin.h), which stay loaded until the program ends, and of pair logs ("pairs:FILE").
+/// Throws InputError for a file that is not such a library, was built with other headers, has no
+/// algorithm, or one with an invalid or duplicate id, two parameters with one name, or a default
+/// out of range.
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins);
 
 /// Adds the engines of these libraries to the available ones (see broadmark/scenes/engine_plugin.h)

@@ -7,7 +7,7 @@
 #include "broadmark/error.h"
 #include "broadmark/recordings/recording.h"
 #include "imports/files.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 #include "sources/make_source.h"
 
 namespace broadmark::sources::recording {

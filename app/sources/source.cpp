@@ -14,7 +14,7 @@
 #include "broadmark/names.h"
 #include "broadmark/recordings/recording.h"
 #include "imports/files.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 #include "sources/make_source.h"
 #include "support/words.h"
 

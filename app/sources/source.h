@@ -14,7 +14,7 @@
 #include "broadmark/harness/oracle.h"
 #include "broadmark/results/results.h"
 #include "broadmark/scenes/simulation.h"
-#include "imports/contents.h"
+#include "support/contents.h"
 #include "imports/import_summary.h"
 #include "original/settings.h"
 #include "request/reading_options.h"

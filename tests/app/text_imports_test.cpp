@@ -10,7 +10,7 @@
 #include <locale>
 
 #include "app/import_files.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 
 namespace broadmark::tests {
 namespace {

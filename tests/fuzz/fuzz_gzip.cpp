@@ -1,8 +1,8 @@
 // Any bytes as a compressed file: their start, and all of their lines.
 
 #include "import_through.h"
-#include "imports/contents.h"
-#include "imports/line_reader.h"
+#include "support/contents.h"
+#include "support/line_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace broadmark;

@@ -1,4 +1,4 @@
-#include "imports/contents.h"
+#include "support/contents.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 #include <span>
 
 #include "broadmark/error.h"
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 #include "support/interrupt.h"
 
 namespace broadmark::imports {

@@ -1,4 +1,4 @@
-#include "imports/line_reader.h"
+#include "support/line_reader.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
-#include "imports/contents.h"
+#include "support/contents.h"
 #include "support/words.h"
 
 namespace broadmark::imports {

@@ -1,0 +1,20 @@
+// A log of pairs as an algorithm, so that runs, lists and the inspector treat it as any other: what
+// an engine answered beside the right answer, on the recording that it was logged for.
+#pragma once
+
+#include <string>
+
+#include "broadmark/algorithm.h"
+
+namespace broadmark {
+
+/// What stands before the file's name in --plugin.
+inline constexpr char kPairLogPrefix[] = "pairs:";
+
+bool isPairLog(const std::string& plugin);
+
+/// The algorithm "logged", for a plug-in "pairs:FILE". The file is read by its instances, which
+/// then throw InputError for a damaged one. Throws InputError if there is no such file.
+Algorithm loggedPairs(const std::string& plugin);
+
+}  // namespace broadmark
