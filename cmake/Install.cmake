@@ -97,4 +97,5 @@ install(DIRECTORY assets/scenes assets/pictures assets/workflows DESTINATION ${C
 install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/python
   PATTERN .ipynb_checkpoints EXCLUDE)
 install(DIRECTORY broadphase/examples broadphase/include DESTINATION ${CMAKE_INSTALL_DOCDIR}/broadphase)
+install(DIRECTORY plugins/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/plugins)
 install(FILES scripts/packages.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/scripts)
