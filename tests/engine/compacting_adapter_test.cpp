@@ -192,12 +192,14 @@ TEST(OccupancyBitmap, KnowsEveryOverlap) {
     Aabb bounds = boxes[0];
     for (const Aabb& box : boxes) bounds = merged(bounds, box);
     for (const Aabb& world : {bounds, kBounds, boxes[0], kEmptyBox, Aabb{}}) {
-      OccupancyBitmap grid(world);
-      for (const Aabb& marked : boxes) {
-        grid.clear();
-        grid.mark(marked);
-        for (const Aabb& box : boxes) {
-          EXPECT_TRUE(grid.isNear(box) || !overlaps(marked, box));
+      for (const std::size_t bodies : {0UL, 1UL, 300UL, 100'000UL}) {
+        OccupancyBitmap grid(world, bodies);
+        for (const Aabb& marked : boxes) {
+          grid.clear();
+          grid.mark(marked);
+          for (const Aabb& box : boxes) {
+            EXPECT_TRUE(grid.isNear(box) || !overlaps(marked, box));
+          }
         }
       }
     }
@@ -205,7 +207,7 @@ TEST(OccupancyBitmap, KnowsEveryOverlap) {
 }
 
 TEST(OccupancyBitmap, TellsApartWhatIsFar) {
-  OccupancyBitmap grid(kBounds);
+  OccupancyBitmap grid(kBounds, 100'000);
   grid.mark(unitAt(50, 50, 50));
   EXPECT_TRUE(grid.isNear(unitAt(50, 50, 51)));
   EXPECT_FALSE(grid.isNear(unitAt(50, 50, 60)));

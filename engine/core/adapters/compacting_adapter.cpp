@@ -104,7 +104,7 @@ class CompactingAdapter final : public Adapter {
     non_colliding_bodies_.reserve(bodies.size());
     colliding_bodies_.reserve(bodies.size());
     listBodies();
-    occupancy_.emplace(scene.world);
+    occupancy_.emplace(scene.world, bodies.size());
   }
 
   void listBodies() {
