@@ -9,8 +9,8 @@
 #include <set>
 
 #include "broadmark/error.h"
-#include "support/line_reader.h"
 #include "imports/mesh.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 namespace {

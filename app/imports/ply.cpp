@@ -14,8 +14,8 @@
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
 #include "imports/byte_reader.h"
-#include "support/line_reader.h"
 #include "imports/mesh.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 namespace {

@@ -7,8 +7,8 @@
 #include "broadmark/error.h"
 #include "broadmark/recordings/recording.h"
 #include "imports/files.h"
-#include "support/line_reader.h"
 #include "sources/make_source.h"
+#include "support/line_reader.h"
 
 namespace broadmark::sources::recording {
 namespace {

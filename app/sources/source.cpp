@@ -14,8 +14,8 @@
 #include "broadmark/names.h"
 #include "broadmark/recordings/recording.h"
 #include "imports/files.h"
-#include "support/line_reader.h"
 #include "sources/make_source.h"
+#include "support/line_reader.h"
 #include "support/words.h"
 
 namespace broadmark {

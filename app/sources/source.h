@@ -14,11 +14,11 @@
 #include "broadmark/harness/oracle.h"
 #include "broadmark/results/results.h"
 #include "broadmark/scenes/simulation.h"
-#include "support/contents.h"
 #include "imports/import_summary.h"
 #include "original/settings.h"
 #include "request/reading_options.h"
 #include "request/run_request.h"
+#include "support/contents.h"
 
 namespace broadmark {
 

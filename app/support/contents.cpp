@@ -16,8 +16,8 @@
 #include <span>
 
 #include "broadmark/error.h"
-#include "support/line_reader.h"
 #include "support/interrupt.h"
+#include "support/line_reader.h"
 
 namespace broadmark::imports {
 namespace {

@@ -3,9 +3,9 @@
 // Each frame counts with its minimum over the repetitions, since disturbances only slow frames
 // down. The machine's speed may differ between two runs, for all cases: a case's ratio is relative
 // to the drift, the median of the other cases' ratios, in logarithms. Cases on the same recording
-// ran alternately, so they share more drift. The interval's width is the root mean square of two: the
-// noise within the runs (a block bootstrap over the frames, the jackknife over the repetitions), and
-// the deviation of the other cases from their drift.
+// ran alternately, so they share more drift. The interval's width is the root mean square of two:
+// the noise within the runs (a block bootstrap over the frames, the jackknife over the
+// repetitions), and the deviation of the other cases from their drift.
 #pragma once
 
 #include <optional>
