@@ -22,20 +22,24 @@ class OccupancyBitmap {
     // Of more rows, a box touches several, and all of them are cleared in every frame.
     const auto edge = static_cast<std::size_t>(std::cbrt(static_cast<double>(bodies)));
     const std::size_t rows = std::clamp<std::size_t>(std::bit_ceil(2 * edge), 4, kMaxCells);
-    cells_ = {kMaxCells, rows, rows};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low_[axis] = world.min[axis];
-      const float extent = world.max[axis] - world.min[axis];
-      cells_per_unit_[axis] = extent > 0 ? static_cast<float>(cells_[axis]) / extent : 0;
+    row_length_ = rows;
+    constexpr auto kCells = static_cast<float>(kMaxCells);
+    const auto others = static_cast<float>(rows);
+    const Floats cells = {kCells, others, others, 1};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto index = static_cast<std::size_t>(axis);
+      const float extent = world.max[index] - world.min[index];
+      low_[axis] = world.min[index];
+      cells_per_unit_[axis] = extent > 0 ? cells[axis] / extent : 0;
+      last_cell_[axis] = cells[axis] - 1;
     }
     clear();
   }
 
-  void clear() { rows_.assign(cells_[1] * cells_[2], 0); }
+  void clear() { rows_.assign(row_length_ * row_length_, 0); }
 
   void mark(const Aabb& box) {
-    const std::uint64_t cells = cellsInRow(box);
-    forEachRow(box, [&](std::uint64_t& row) {
+    forEachRow(box, [](std::uint64_t& row, std::uint64_t cells) {
       row |= cells;
       return false;
     });
@@ -43,44 +47,49 @@ class OccupancyBitmap {
 
   /// Whether the box touches a marked cell.
   [[nodiscard]] bool isNear(const Aabb& box) {
-    const std::uint64_t cells = cellsInRow(box);
-    return forEachRow(box, [&](const std::uint64_t& row) { return (row & cells) != 0; });
+    return forEachRow(
+        box, [](const std::uint64_t& row, std::uint64_t cells) { return (row & cells) != 0; });
   }
 
  private:
   static constexpr std::size_t kMaxCells = 64;  ///< per axis: a row is one 64-bit word
 
+  // All axes at once, by the vector extensions of GCC and clang.
+  using Floats [[gnu::vector_size(16)]] = float;
+  using Integers [[gnu::vector_size(16)]] = std::int32_t;
+
   /// Also defined for infinity and NaN.
-  [[nodiscard]] std::size_t cellOf(float position, std::size_t axis) const {
-    const float cell = (position - low_[axis]) * cells_per_unit_[axis];
-    if (!(cell > 0)) return 0;
-    return cell < static_cast<float>(cells_[axis]) ? static_cast<std::size_t>(cell)
-                                                   : cells_[axis] - 1;
+  [[nodiscard]] Integers cellsOf(const std::array<float, 4>& position) const {
+    const Floats zero = {};
+    Floats cell = (std::bit_cast<Floats>(position) - low_) * cells_per_unit_;
+    cell = cell > zero ? cell : zero;
+    cell = cell < last_cell_ ? cell : last_cell_;
+    return __builtin_convertvector(cell, Integers);
   }
 
-  [[nodiscard]] std::uint64_t cellsInRow(const Aabb& box) const {
-    const std::size_t first = cellOf(box.min[0], 0);
-    const std::size_t last = cellOf(box.max[0], 0);
-    return ~std::uint64_t{0} >> (kMaxCells - 1 - last) & ~std::uint64_t{0} << first;
-  }
-
-  /// Calls visit(row) for the touched rows until a call returns true; returns whether one did.
+  /// Calls visit(row, its touched cells) for the touched rows until a call returns true; returns
+  /// whether one did.
   template <class Visit>
   bool forEachRow(const Aabb& box, Visit visit) {
-    const std::size_t last_y = cellOf(box.max[1], 1);
-    const std::size_t first_z = cellOf(box.min[2], 2);
-    const std::size_t last_z = cellOf(box.max[2], 2);
-    for (std::size_t y = cellOf(box.min[1], 1); y <= last_y; ++y) {
-      for (std::size_t z = first_z; z <= last_z; ++z) {
-        if (visit(rows_[cells_[2] * y + z])) return true;
+    const Integers first = cellsOf(box.min);
+    const Integers last = cellsOf(box.max);
+    const std::uint64_t cells = ~std::uint64_t{0} >> (static_cast<int>(kMaxCells) - 1 - last[0]) &
+                                ~std::uint64_t{0} << first[0];
+    for (std::int32_t y = first[1]; y <= last[1]; ++y) {
+      for (std::int32_t z = first[2]; z <= last[2]; ++z) {
+        if (visit(rows_[row_length_ * static_cast<std::size_t>(y) + static_cast<std::size_t>(z)],
+                  cells)) {
+          return true;
+        }
       }
     }
     return false;
   }
 
-  std::array<std::size_t, 3> cells_{};  ///< by axis
-  std::array<float, 3> low_{};
-  std::array<float, 3> cells_per_unit_{};
+  std::size_t row_length_ = 0;  ///< cells along y and z
+  Floats low_{};
+  Floats cells_per_unit_{};
+  Floats last_cell_{};
   std::vector<std::uint64_t> rows_;
 };
 
