@@ -212,7 +212,6 @@ class BroadPhase::Implementation {
   }
 
   void detectChanges(const BoxReader& boxes, std::size_t count);
-  void sortListed(std::size_t count);
   void checkListed(std::span<const Body> listed, std::size_t count);
   void selectListed(const BoxReader& boxes, std::span<const Body> listed, std::size_t count);
   void checkChanged(const BoxReader& boxes, std::size_t count);
@@ -242,11 +241,10 @@ class BroadPhase::Implementation {
   bool has_answer_ = false;
   std::vector<Filter> filters_;  ///< default beyond the end
   bool filters_changed_ = false;
-  std::vector<Aabb> boxes_;              ///< by slot; those from size_ on are empty
-  std::vector<Body> changed_;            ///< ascending
-  bool vanishes_ = false;                ///< one of the changed bodies is absent now
-  std::vector<Body> listed_;             ///< ascending
-  std::vector<std::uint8_t> is_listed_;  ///< by body, for sortListed()
+  std::vector<Aabb> boxes_;    ///< by slot; those from size_ on are empty
+  std::vector<Body> changed_;  ///< ascending
+  bool vanishes_ = false;      ///< one of the changed bodies is absent now
+  std::vector<Body> listed_;   ///< ascending
 
   /// All bodies are present, and their number is fixed, which the algorithms make use of.
   bool all_present_ = true;
@@ -284,30 +282,14 @@ void BroadPhase::Implementation::detectChanges(const BoxReader& boxes, std::size
   changed_.resize(changes);
 }
 
-void BroadPhase::Implementation::sortListed(std::size_t count) {
-  if (std::ranges::is_sorted(listed_)) return;
-  constexpr std::size_t kMaxSortedShare = 32;  // about where a sort costs as much
-  if (kMaxSortedShare * listed_.size() < count) {
-    std::ranges::sort(listed_);
-    return;
-  }
-  is_listed_.assign(count, 0);
-  for (const Body body : listed_) is_listed_[body] = 1;
-  listed_.clear();
-  for (std::size_t body = 0; body < count; ++body) {
-    if (is_listed_[body] != 0) listed_.push_back(static_cast<Body>(body));
-  }
-}
-
 /// The changed bodies must be listed, except new ones and those beyond the end.
 void BroadPhase::Implementation::checkListed(std::span<const Body> listed, std::size_t count) {
   listed_.assign(listed.begin(), listed.end());
-  const Body last = listed_.empty() ? 0 : *std::ranges::max_element(listed_);
-  if (!listed_.empty() && last >= count) {
-    throw std::invalid_argument("changed: " + numbered("no body", last) +
+  if (!std::ranges::is_sorted(listed_)) std::ranges::sort(listed_);
+  if (!listed_.empty() && listed_.back() >= count) {
+    throw std::invalid_argument("changed: " + numbered("no body", listed_.back()) +
                                 numbered(": there are", count));
   }
-  sortListed(count);
   if (options_.changes == Changes::trusted) return;
   auto next = listed_.begin();
   for (const Body body : changed_) {
