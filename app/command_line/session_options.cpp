@@ -72,7 +72,10 @@ void SessionParser::addSources() {
   tag(suggestValues(source, sceneIds()), kNone);
   for (CLI::Option* option : addSceneOptions(app_, options_.scene)) tag(option, kCase);
   tag(addParameters(app_, options_.parameters), kCase);
-  tag(addPlugins(app_, options_.plugins), kNone);
+  tag(addPlugins(app_, options_.plugins,
+                 "algorithms or physics engines; or pairs:LOG, the pairs that a program logged "
+                 "(see 'broadmark audit') as an algorithm"),
+      kNone);
   addCaseOfResults();
 }
 

@@ -48,6 +48,7 @@ struct WrongPair {
 /// The faults of one kind, over all frames.
 struct Faults {
   const char* name;
+  int rows = 0;  ///< with its pair, in the log of the recording that shows it
   std::uint64_t count = 0;
   std::uint64_t frames = 0;
   std::optional<WrongPair> first = {};
@@ -96,14 +97,15 @@ class Audit {
       const bool exists = pair.a < pair.b && pair.b < frame.boxes.size();
       (exists ? doubled : impossible).push_back(pair);
     }
+    const std::uint64_t others = difference.invalid_count - difference.duplicate_count;
     ++checked_;
     pairs_ += logged.size();
     wrong_ += difference.isMismatch() || !impossible.empty() ? 1 : 0;
     allowed_ += difference.allowed_extra_count;
     missed_.add(frame.index, difference.missed_count, difference.missed_pairs);
     false_.add(frame.index, difference.false_count, difference.false_pairs);
-    doubled_.add(frame.index, doubled.size(), doubled);
-    impossible_.add(frame.index, impossible.size(), impossible);
+    doubled_.add(frame.index, difference.duplicate_count, doubled);
+    impossible_.add(frame.index, others + log_.impossible().size(), impossible);
   }
 
   int report(Progress& progress) {
@@ -120,9 +122,11 @@ class Audit {
         {"", "fault", "pairs", "frames", "first", "pair"}};
     for (const Faults* faults : {&missed_, &false_, &doubled_, &impossible_}) {
       if (faults->count == 0) continue;
+      const auto& first = faults->first;
       rows.push_back({"", faults->name, fmt::format("{}", faults->count),
-                      fmt::format("{}", faults->frames), fmt::format("{}", faults->first->frame),
-                      fmt::format("{}-{}", faults->first->pair.a, faults->first->pair.b)});
+                      fmt::format("{}", faults->frames),
+                      first ? fmt::format("{}", first->frame) : "",
+                      first ? fmt::format("{}-{}", first->pair.a, first->pair.b) : ""});
     }
     progress.print(alignColumns(rows, {false, false, true, true, true, false}));
     for (const Faults* faults : {&missed_, &false_, &doubled_}) {
@@ -149,16 +153,10 @@ class Audit {
     writeSelection(file, recording_, part);
     const std::size_t index = frame == 0 ? 0 : 1;
     std::string rows = "frame,a,b\n";
-    for (int i = 0; i < copies(faults); ++i) rows += fmt::format("{},0,1\n", index);
+    for (int i = 0; i < faults.rows; ++i) rows += fmt::format("{},0,1\n", index);
     const fs::path log = fs::path(file).replace_extension(".csv");
     writeTextFile(log, rows);
     progress.print(fmt::format("written: {}, {}", file.string(), log.string()));
-  }
-
-  /// How often the log of the recording that shows a fault has the pair.
-  [[nodiscard]] int copies(const Faults& faults) const {
-    if (&faults == &missed_) return 0;
-    return &faults == &doubled_ ? 2 : 1;
   }
 
   const Options& options_;
@@ -169,10 +167,10 @@ class Audit {
   std::uint64_t pairs_ = 0;
   std::uint64_t wrong_ = 0;  ///< frames
   std::uint64_t allowed_ = 0;
-  Faults missed_{"missed"};
-  Faults false_{"false"};
-  Faults doubled_{"doubled"};
-  Faults impossible_{"impossible"};
+  Faults missed_{.name = "missed"};
+  Faults false_{.name = "false", .rows = 1};
+  Faults doubled_{.name = "doubled", .rows = 2};
+  Faults impossible_{.name = "impossible"};
 };
 
 int run(const Options& options) {

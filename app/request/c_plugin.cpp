@@ -1,4 +1,4 @@
-// Wraps each entry of a C table as an algorithm.
+// Each entry of a C table becomes an algorithm.
 
 #include "request/c_plugin.h"
 
@@ -73,7 +73,6 @@ class CBroadPhase final : public BroadPhase {
     if (events_) searchOverlaps();
   }
   void updateObjects(const Frame& frame) override {
-    if (frame.filter != nullptr) filter_ = *frame.filter;
     table_->update_objects(instance_, &frameOf(frame));
   }
   void cleanCache() override {
@@ -181,6 +180,7 @@ std::vector<Algorithm> algorithmsOf(const broadmark_plugin* plugin, const std::s
     refuse(fmt::format("made for version {} of broadmark_plugin.h, this program knows up to {}",
                        plugin->version, BROADMARK_PLUGIN_VERSION));
   }
+  if (plugin->algorithm_count == 0) refuse("has no algorithms");
   std::vector<Algorithm> algorithms;
   for (std::uint32_t i = 0; i < plugin->algorithm_count; ++i) {
     // Members that a plug-in of an older version lacks remain null.

@@ -13,7 +13,7 @@ namespace broadmark {
 inline constexpr char kCPluginSymbol[] = "broadmark_c_plugin";
 
 /// The algorithms of a library that stays loaded. Throws InputError, with `file`, for another
-/// version, or an entry without a function that is not optional.
+/// version, no entry, or one without a function that is not optional.
 std::vector<Algorithm> algorithmsOf(const broadmark_plugin* plugin, const std::string& file);
 
 }  // namespace broadmark

@@ -210,7 +210,7 @@ std::vector<Algorithm> algorithmsIn(const std::string& file) {
     const auto table = reinterpret_cast<decltype(&broadmark_c_plugin)>(function);
     std::ranges::move(algorithmsOf(table(), file), std::back_inserter(algorithms));
   }
-  build.hash = hashOf(file);
+  if (!algorithms.empty()) build.hash = hashOf(file);
   for (Algorithm& algorithm : algorithms) {
     algorithm.plugin = file;
     algorithm.plugin_build = build;

@@ -136,6 +136,7 @@ FrameDifference findDifference(PairRuns answer, std::span<const Pair> correct, c
   for (std::size_t i = 0; i < reported.size(); ++i) {
     const Pair pair = reported[i];
     if (i > 0 && pair == reported[i - 1]) {
+      ++difference.duplicate_count;
       recordPair(difference.invalid_count, difference.invalid_pairs, pair);
       continue;
     }

@@ -69,6 +69,8 @@ TEST(CPlugin, WhatCannotWorkIsRefused) {
   expectRefusal([] { algorithmsOf(nullptr, "mine.so"); }, "returns null");
   expectRefusal([] { load(table(), sizeof(broadmark_algorithm), 0); }, "version 0");
   expectRefusal([] { load(table(), sizeof(broadmark_algorithm), 2); }, "knows up to 1");
+  const broadmark_plugin empty{BROADMARK_PLUGIN_VERSION, 0, sizeof(broadmark_algorithm), nullptr};
+  expectRefusal([&] { algorithmsOf(&empty, "mine.so"); }, "has no algorithms");
   broadmark_algorithm incomplete = table();
   incomplete.destroy = nullptr;
   expectRefusal([&] { load(incomplete); }, "'mine': create, destroy");

@@ -59,6 +59,15 @@ TEST_F(Audit, FaultsOfEachKindAreCountedAndCutOut) {
   EXPECT_EQ(audit("frame,a,b\n", {"--output", "faults"}).status, 2) << "nothing is written over";
 }
 
+TEST_F(Audit, CountsAreCompleteBeyondWhatIsListed) {
+  std::string log = "frame,a,b\n1,0,1\n2,0,1\n2,1,2\n1,7,8\n";
+  for (int i = 0; i < 3000; ++i) log += "1,0,1\n";
+  const ProgramResult ended = audit(log);
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, testing::ContainsRegex("doubled +3000"));
+  EXPECT_THAT(ended.out, testing::ContainsRegex("impossible +1 "));
+}
+
 TEST_F(Audit, AnEndWithoutABeginningIsImpossible) {
   const ProgramResult ended = audit("frame,event,a,b\n1,begin,0,1\n2,end,2,0\n2,begin,1,2\n");
   EXPECT_EQ(ended.status, 1);

@@ -71,6 +71,7 @@ struct FrameDifference {
   std::uint64_t false_count = 0;
   std::uint64_t allowed_extra_count = 0;
   std::uint64_t invalid_count = 0;
+  std::uint64_t duplicate_count = 0;  ///< of the invalid pairs
   std::vector<Pair> missed_pairs;
   std::vector<Pair> false_pairs;
   std::vector<Pair> allowed_extra_pairs;
