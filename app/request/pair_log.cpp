@@ -69,85 +69,103 @@ Columns columnsOf(const LineReader& lines, const std::vector<std::string_view>& 
   return {.frame = require("frame"), .a = require("a"), .b = require("b"), .event = find("event")};
 }
 
-}  // namespace
+/// Reads the rows of a file into `Rows`, PairLog's.
+template <class Rows>
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, Rows& rows) : lines_(path), rows_(rows) {}
 
-PairLog::PairLog(const std::filesystem::path& path) {
-  LineReader lines(path);
-  std::optional<bool> has_events;
-  const auto requireKind = [&](bool events) {
-    if (has_events.value_or(events) != events) lines.fail("pairs and events are mixed");
-    has_events = events;
-  };
-  const auto add = [&](std::uint32_t frame, std::uint32_t a, std::uint32_t b, bool ends) {
-    rows_[frame].push_back({{std::min(a, b), std::max(a, b)}, ends});
-  };
-
-  const auto readJson = [&] {
-    const Json object = jsonOrNull(lines.line());
-    if (!object.is_object() || !object.contains("frame")) {
-      lines.fail("is not a JSON object with \"frame\"");
+  /// Returns whether the rows are events.
+  bool read() {
+    std::optional<bool> is_json;
+    while (lines_.next()) {
+      const std::string_view line = trimmed(lines_.line());
+      if (line.empty() || line.starts_with('#')) continue;
+      if (!is_json) is_json = line.starts_with('{');
+      *is_json ? readObject() : readRow();
     }
-    const std::uint32_t frame = number(lines, object.at("frame"), "frame");
+    if (!is_json) lines_.fail(0, "is empty: a heading or JSON Lines are expected");
+    return events_.value_or(false);
+  }
+
+ private:
+  void requireKind(bool events) {
+    if (events_.value_or(events) != events) lines_.fail("pairs and events are mixed");
+    events_ = events;
+  }
+
+  void add(std::uint32_t frame, std::uint32_t a, std::uint32_t b, bool ends) {
+    rows_[frame].push_back({{std::min(a, b), std::max(a, b)}, ends});
+  }
+
+  void readObject() {
+    const Json object = jsonOrNull(lines_.line());
+    if (!object.is_object() || !object.contains("frame")) {
+      lines_.fail("is not a JSON object with \"frame\"");
+    }
+    const std::uint32_t frame = number(lines_, object.at("frame"), "frame");
     rows_[frame];
     bool has_any = false;
     for (const char* key : {"pairs", "began", "ended"}) {
       if (!object.contains(key)) continue;
       has_any = true;
       requireKind(std::string_view(key) != "pairs");
-      const Json& list = object.at(key);
-      if (!list.is_array()) lines.fail(fmt::format("\"{}\" is not an array of pairs", key));
-      for (const Json& pair : list) {
-        if (!pair.is_array() || pair.size() != 2) {
-          lines.fail(fmt::format("\"{}\" holds something that is no pair [a, b]", key));
-        }
-        add(frame, number(lines, pair[0], "a"), number(lines, pair[1], "b"),
-            std::string_view(key) == "ended");
-      }
+      readPairs(frame, key, object.at(key));
     }
-    if (!has_any) lines.fail("has neither \"pairs\" nor \"began\" or \"ended\"");
-  };
-
-  std::vector<std::string_view> cells;
-  std::optional<Columns> columns;
-  char separator = ',';
-  const auto readRow = [&] {
-    if (!columns) {
-      separator = std::ranges::max(std::string_view(",;\t"), {},
-                                   [&](char c) { return std::ranges::count(lines.line(), c); });
-    }
-    splitCells(separator, lines.line(), cells);
-    if (!columns) {
-      columns = columnsOf(lines, cells);
-      requireKind(columns->event.has_value());
-      return;
-    }
-    const std::size_t needed =
-        std::max({columns->frame, columns->a, columns->b, columns->event.value_or(0)});
-    if (cells.size() <= needed) {
-      lines.fail(fmt::format("has {} cells, not {}", cells.size(), needed + 1));
-    }
-    bool ends = false;
-    if (columns->event) {
-      const std::string event = lowered(cells[*columns->event]);
-      ends = event == "end";
-      if (!ends && event != "begin") {
-        lines.fail(fmt::format("event {}: begin or end is expected", imports::quoted(event)));
-      }
-    }
-    add(number(lines, cells[columns->frame], "frame"), number(lines, cells[columns->a], "a"),
-        number(lines, cells[columns->b], "b"), ends);
-  };
-
-  std::optional<bool> is_json;
-  while (lines.next()) {
-    const std::string_view line = trimmed(lines.line());
-    if (line.empty() || line.starts_with('#')) continue;
-    if (!is_json) is_json = line.starts_with('{');
-    *is_json ? readJson() : readRow();
+    if (!has_any) lines_.fail("has neither \"pairs\" nor \"began\" or \"ended\"");
   }
-  if (!is_json) lines.fail(0, "is empty: a heading or JSON Lines are expected");
-  has_events_ = has_events.value_or(false);
-}
+
+  void readPairs(std::uint32_t frame, std::string_view key, const Json& list) {
+    if (!list.is_array()) lines_.fail(fmt::format("\"{}\" is not an array of pairs", key));
+    for (const Json& pair : list) {
+      if (!pair.is_array() || pair.size() != 2) {
+        lines_.fail(fmt::format("\"{}\" holds something that is no pair [a, b]", key));
+      }
+      add(frame, number(lines_, pair[0], "a"), number(lines_, pair[1], "b"), key == "ended");
+    }
+  }
+
+  void readHeading() {
+    separator_ = std::ranges::max(std::string_view(",;\t"), {},
+                                  [&](char c) { return std::ranges::count(lines_.line(), c); });
+    splitCells(separator_, lines_.line(), cells_);
+    columns_ = columnsOf(lines_, cells_);
+    requireKind(columns_->event.has_value());
+  }
+
+  void readRow() {
+    if (!columns_) return readHeading();
+    splitCells(separator_, lines_.line(), cells_);
+    const std::size_t needed =
+        std::max({columns_->frame, columns_->a, columns_->b, columns_->event.value_or(0)});
+    if (cells_.size() <= needed) {
+      lines_.fail(fmt::format("has {} cells, not {}", cells_.size(), needed + 1));
+    }
+    add(number(lines_, cells_[columns_->frame], "frame"), number(lines_, cells_[columns_->a], "a"),
+        number(lines_, cells_[columns_->b], "b"),
+        columns_->event && isEnd(cells_[*columns_->event]));
+  }
+
+  [[nodiscard]] bool isEnd(std::string_view cell) const {
+    const std::string event = lowered(cell);
+    if (event != "begin" && event != "end") {
+      lines_.fail(fmt::format("event {}: begin or end is expected", imports::quoted(event)));
+    }
+    return event == "end";
+  }
+
+  LineReader lines_;
+  Rows& rows_;
+  std::optional<bool> events_;  ///< of all lines so far
+  // Of a table.
+  char separator_ = ',';
+  std::optional<Columns> columns_;
+  std::vector<std::string_view> cells_;
+};
+
+}  // namespace
+
+PairLog::PairLog(const std::filesystem::path& path) : has_events_(Reader(path, rows_).read()) {}
 
 const std::vector<Pair>& PairLog::pairsOf(std::uint32_t frame) {
   pairs_.clear();
