@@ -8,7 +8,9 @@ contain `expect` commands: an unexpected state ends the script with the line num
 
 from __future__ import annotations
 
+import pathlib
 import random
+import re
 from collections.abc import Callable, Iterator
 
 #: Algorithms of every build.
@@ -32,16 +34,12 @@ SCENES = [
     "swarm",
     "fountain",
 ]
-PANELS = [
-    "Scene",
-    "Algorithms",
-    "Author",
-    "Batch",
-    "Bodies",
-    "Look",
-    "Mismatches",
-    "Results",
-]
+#: The names that the inspector's panels state.
+PANELS = sorted(
+    name
+    for file in (pathlib.Path(__file__).parents[2] / "app/inspector/panels").glob("*.cpp")
+    for name in re.findall(r'PanelSpec spec = {\s*"(\w+)"', file.read_text())
+)
 #: Recordings to prepare, with the arguments of `bake`.
 RECORDINGS = {
     "reference.broadmark": [
@@ -223,7 +221,7 @@ key Escape
 key C
 key H
 key H
-click "Display/{self._random.choice(['top', 'front', 'left', 'figure', 'all of it'])}"
+click "Display/{self._random.choice(['top', 'front', 'left', 'figure', 'whole scene'])}"
 wait 20
 panel {self._random.choice(PANELS)}
 wait 2
