@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -65,12 +63,14 @@ TortureProcess::Outcome TortureProcess::run(std::uint64_t number, const CancelQu
   // Enough to amortise the start. All are suspects if the process ends.
   constexpr std::size_t kMaxRounds = 50;
   if (rounds_.size() == kMaxRounds) end();
-  if (pid_ == 0) start(cancelled);
+  if (!process_.alive()) start(cancelled);
   Outcome outcome{.coverage = {}, .suspected = {}, .earlier = rounds_};
   rounds_.push_back(number);
-  const bool sent = ::send(socket_.get(), &number, sizeof number, MSG_NOSIGNAL) == sizeof number;
+  const bool sent =
+      ::send(lines_.descriptor(), &number, sizeof number, MSG_NOSIGNAL) == sizeof number;
   const std::optional<std::string> reply = sent ? readLine(cancelled) : std::nullopt;
-  const std::string& text = reply ? *reply : buffer_;
+  const std::string unfinished = lines_.unfinished();
+  const std::string& text = reply ? *reply : unfinished;
   const auto worlds = static_cast<std::size_t>(
       std::ranges::count(text.substr(0, text.find_first_not_of(kWorldStart)), kWorldStart));
   const std::size_t world = std::max<std::size_t>(worlds, 1) - 1;
@@ -91,24 +91,9 @@ TortureProcess::Outcome TortureProcess::run(std::uint64_t number, const CancelQu
 
 void TortureProcess::start(const CancelQuery& cancelled) {
   auto [here, there] = makeSockets();
-  std::vector<std::string> command = servingCommand(seed_);
-  std::vector<char*> arguments;
-  for (std::string& word : command) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions{};
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_adddup2(&actions, there.get(), STDIN_FILENO);
-  ::posix_spawn_file_actions_adddup2(&actions, there.get(), STDOUT_FILENO);
-  ::posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  const int error =
-      ::posix_spawn(&pid_, arguments.front(), &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) {
-    pid_ = 0;
-    throw InputError(fmt::format("torture: cannot start a process: {}", std::strerror(error)));
-  }
-  socket_ = std::move(here);
-  buffer_.clear();
+  process_ = ChildProcess(servingCommand(seed_),
+                          {.descriptors = {there.get(), there.get(), STDERR_FILENO}});
+  lines_ = LineChannel(std::move(here));
   rounds_.clear();
   there = FileDescriptor();  // its last copy is closed by the end of the process
   if (readLine(cancelled)) return;
@@ -116,38 +101,20 @@ void TortureProcess::start(const CancelQuery& cancelled) {
 }
 
 std::optional<std::string> TortureProcess::readLine(const CancelQuery& cancelled) {
-  constexpr int kPollMilliseconds = 50;
-  while (true) {
-    if (const std::size_t end = buffer_.find('\n'); end != std::string::npos) {
-      std::string line = buffer_.substr(0, end);
-      buffer_.erase(0, end + 1);
-      return line;
-    }
-    if (cancelled && cancelled()) {
-      end();
-      throw Cancelled();
-    }
-    pollfd waited{socket_.get(), POLLIN, 0};
-    if (::poll(&waited, 1, kPollMilliseconds) <= 0) continue;
-    std::array<char, 4096> bytes{};
-    const ssize_t count = ::read(socket_.get(), bytes.data(), bytes.size());
-    if (count <= 0) return std::nullopt;
-    buffer_.append(bytes.data(), static_cast<std::size_t>(count));
+  try {
+    return lines_.read(cancelled);
+  } catch (const Cancelled&) {
+    end();
+    throw;
   }
 }
 
 int TortureProcess::end() {
-  if (pid_ == 0) return 0;
+  if (!process_.alive()) return 0;
   // One that ended by itself keeps its status: it closed the channel as it ended.
-  int status = 0;
-  constexpr int kGraceMilliseconds = 2000;
-  socket_ = FileDescriptor();
-  for (int i = 0; ::waitpid(pid_, &status, WNOHANG) == 0; ++i) {
-    if (i == kGraceMilliseconds || InterruptGuard::requested()) ::kill(pid_, SIGKILL);
-    ::usleep(1000);
-  }
-  pid_ = 0;
-  return status;
+  constexpr std::chrono::seconds kGracePeriod{2};
+  lines_ = {};
+  return process_.wait(kGracePeriod, InterruptGuard::requested);
 }
 
 TortureChannel::TortureChannel()

@@ -5,8 +5,6 @@
 // wrong; which case did is found by running the round again, with each case in a worker process.
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -15,6 +13,8 @@
 
 #include "broadmark/files.h"
 #include "broadmark/fuzz/torture.h"
+#include "broadmark/harness/child_process.h"
+#include "support/line_channel.h"
 
 namespace broadmark {
 
@@ -37,15 +37,14 @@ class TortureProcess {
 
  private:
   void start(const CancelQuery& cancelled);
-  /// The bytes before the next line feed; nullopt if the process ended.
+  /// As LineChannel::read(); ends the process when cancelled.
   std::optional<std::string> readLine(const CancelQuery& cancelled);
   /// Kills the process, unless it has ended. Returns its wait status.
   int end();
 
   std::uint64_t seed_;
-  pid_t pid_ = 0;
-  FileDescriptor socket_;
-  std::string buffer_;
+  ChildProcess process_;
+  LineChannel lines_;
   std::vector<std::uint64_t> rounds_;  ///< that the process has run
 };
 

@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace broadmark;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const std::size_t end = std::min(text.find('\0'), text.size());
-  worker::SharedMemory frames;
+  SharedMemory frames;
   frames.write(std::as_bytes(std::span(text).subspan(end)));
   worker::ChannelEnds ends = worker::openChannel();
   std::jthread host([&] {
@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   });
   worker::Channel channel(std::move(ends.there));
   try {
-    worker::answerCalls(channel, std::move(frames), worker::SharedMemory(), bruteForce);
+    worker::answerCalls(channel, std::move(frames), SharedMemory(), bruteForce);
   } catch (const HostError&) {
   }
   channel = worker::Channel(FileDescriptor());  // hangs up

@@ -21,8 +21,6 @@
 namespace broadmark {
 namespace {
 
-using worker::SharedMemory;
-
 /// Peak resident memory of this process.
 std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
 
@@ -215,6 +213,7 @@ class Server {
   /// Only the first pass is representative: later passes reuse freed memory.
   void measure() {
     measured_ = true;
+    if (executor().testCase().algorithm.traits.self_timed) return;
     const auto peak = peakBytes();
     if (peak && peak_before_) peak_growth_ = *peak - *peak_before_;
   }

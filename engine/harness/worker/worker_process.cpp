@@ -2,18 +2,15 @@
 
 #include "broadmark/harness/worker_process.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstring>
-#include <thread>
 
 #include "broadmark/error.h"
+#include "broadmark/harness/child_process.h"
 #include "callgrind.h"
 #include "worker/protocol.h"
 
@@ -21,7 +18,6 @@ namespace broadmark {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using worker::SharedMemory;
 
 /// Grace period before the process is killed.
 constexpr std::chrono::seconds kGracePeriod{5};
@@ -38,35 +34,15 @@ std::string endText(int wait_status) {
   return "crashed with " + what;
 }
 
-/// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, its
-/// output goes to our standard error. Throws InputError when it cannot be started.
-pid_t spawn(std::vector<std::string> command, const std::vector<int>& descriptors) {
-  posix_spawn_file_actions_t actions{};
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  // Keeps a plug-in's output out of our results.
-  ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-  std::vector<FileDescriptor> copies;
-  int next = STDERR_FILENO + 1;
-  for (const int descriptor : descriptors) {
-    // Via a number beyond all others, so that none is overwritten before it is copied.
-    constexpr int kFirstCopy = 16;
-    copies.emplace_back(::fcntl(descriptor, F_DUPFD_CLOEXEC, kFirstCopy));
-    ::posix_spawn_file_actions_adddup2(&actions, copies.back().get(), next++);
+/// Starts a command with these descriptors as 3, 4, …: its output goes to our standard error, which
+/// keeps a plug-in's output out of our results. Throws InputError when it cannot be started.
+ChildProcess start(std::vector<std::string> command, std::vector<int> descriptors) {
+  descriptors.insert(descriptors.begin(), {-1, STDERR_FILENO, STDERR_FILENO});
+  try {
+    return {std::move(command), {.descriptors = descriptors}};
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("worker process: {}", error.what()));
   }
-  ::posix_spawn_file_actions_addclosefrom_np(&actions, next);
-  std::vector<char*> arguments;
-  for (std::string& word : command) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  pid_t pid = 0;
-  const int error =
-      ::posix_spawnp(&pid, arguments.front(), &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) {
-    throw InputError(fmt::format("{}: cannot be started as a worker process: {}", command.front(),
-                                 std::strerror(error)));
-  }
-  return pid;
 }
 
 /// The command of the process. Under valgrind /proc/self would be valgrind's.
@@ -87,7 +63,7 @@ class Connection {
   ~Connection() {
     // Closing the channel ends the process, unless it hangs.
     channel_.reset();
-    if (alive()) wait();
+    if (alive()) process_.wait(kGracePeriod);
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -96,8 +72,7 @@ class Connection {
   SharedMemory answers;
   SharedMemory counts;  ///< of callgrind
 
-  /// False once kill() or wait() has reaped the process.
-  [[nodiscard]] bool alive() const { return pid_ != 0; }
+  [[nodiscard]] bool alive() const { return process_.alive(); }
 
   /// Exchanges versions, and sends the case. Returns the answer.
   Json setUp(const Json& case_message) {
@@ -119,8 +94,8 @@ class Connection {
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
     if (!greeting) {
-      throw InputError(
-          fmt::format("{}: cannot serve as a worker process: {}", program, endText(wait())));
+      throw InputError(fmt::format("{}: cannot serve as a worker process: {}", program,
+                                   endText(process_.wait(kGracePeriod))));
     }
     throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
                                  program, version, worker::kProtocolVersion));
@@ -140,8 +115,8 @@ class Connection {
 
   Connection(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
-        pid_(spawn(commandOf(options), {ends.there.get(), frames.descriptor(), answers.descriptor(),
-                                        counts.descriptor()})),
+        process_(start(commandOf(options), {ends.there.get(), frames.descriptor(),
+                                            answers.descriptor(), counts.descriptor()})),
         channel_(std::in_place, std::move(ends.here)) {}
 
   /// The next message; nullopt once the process has hung up.
@@ -149,42 +124,25 @@ class Connection {
     const auto end = Clock::now() + limit;
     while (!channel_->wait(kPollMilliseconds)) {
       if (options_.cancelled && options_.cancelled()) {
-        kill();
+        process_.kill();
         throw Cancelled();
       }
       if (Clock::now() < end) continue;
-      kill();
+      process_.kill();
       throw HardLimitError(
           fmt::format("no answer within the hard limit of {:.3g} s", limit.count()));
     }
     try {
       return channel_->receive();
     } catch (const HostError&) {
-      kill();
+      process_.kill();
       throw;
     }
   }
 
-  void kill() {
-    ::kill(pid_, SIGKILL);
-    wait();
-  }
-
-  /// Waits for the process to end, and kills it after the grace period. Returns its status.
-  int wait() {
-    const auto end = Clock::now() + kGracePeriod;
-    int status = 0;
-    while (::waitpid(pid_, &status, WNOHANG) == 0) {
-      if (Clock::now() > end) ::kill(pid_, SIGKILL);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    pid_ = 0;
-    return status;
-  }
-
   /// Reports the end of the process.
   [[noreturn]] void fail() {
-    const int status = wait();
+    const int status = process_.wait(kGracePeriod);
     if (options_.valgrind && WIFSIGNALED(status) && WTERMSIG(status) == SIGILL) {
       throw UnsupportedError("an illegal instruction, or one that valgrind does not know (SIGILL)");
     }
@@ -192,7 +150,7 @@ class Connection {
   }
 
   const WorkerOptions& options_;
-  pid_t pid_;
+  ChildProcess process_;
   std::optional<worker::Channel> channel_;
 };
 
