@@ -4,6 +4,7 @@
 
 #include "broadmark/harness/processor_counters.h"
 #include "e2e/end_to_end.h"
+#include "engine/helpers.h"
 #include "support/places.h"
 
 namespace broadmark::tests {
