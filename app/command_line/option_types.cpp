@@ -12,6 +12,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/scenes/registry.h"
 #include "command_line/usage.h"
+#include "request/external_program.h"
 #include "request/former_names.h"
 #include "request/sweep.h"
 #include "support/words.h"
@@ -246,6 +247,23 @@ void hideWithout(const BuildPart& part, const std::vector<CLI::Option*>& options
 CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins, const std::string& more) {
   return addRepeatable(app, "--plugin", "FILE", plugins,
                        fmt::format("shared library with more {} (repeatable)", more));
+}
+
+CLI::Option* addExternal(CLI::App& app, std::vector<std::string>& plugins) {
+  const auto add = [&](const std::vector<std::string>& commands) {
+    for (const std::string& command : commands) {
+      const std::string plugin = kExternalPrefix + command;
+      // Options are parsed again after those of a run request.
+      if (std::ranges::find(plugins, plugin) == plugins.end()) plugins.push_back(plugin);
+    }
+  };
+  return app
+      .add_option_function<std::vector<std::string>>(
+          "--external", add,
+          "shell command of a program that is an algorithm: it reports its times itself (see "
+          "docs/external.md; repeatable)")
+      ->type_name("COMMAND")
+      ->allow_extra_args(false);
 }
 
 CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {

@@ -107,6 +107,8 @@ void hideWithout(const BuildPart&, const std::vector<CLI::Option*>& options);
 /// --plugin: for addEnginesOf() and availableAlgorithms(). `more`: what the command loads from it.
 CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins,
                         const std::string& more = "algorithms or physics engines");
+/// --external: adds to the plug-ins. Define it after --plugin, which replaces them.
+CLI::Option* addExternal(CLI::App&, std::vector<std::string>& plugins);
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
 /// An output file in one of several formats; `outputs` holds the given paths by `format`.

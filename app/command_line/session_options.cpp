@@ -76,6 +76,7 @@ void SessionParser::addSources() {
                  "algorithms or physics engines; or pairs:LOG, the pairs that a program logged "
                  "(see 'broadmark audit') as an algorithm"),
       kNone);
+  tag(addExternal(app_, options_.plugins), kRequest);
   addCaseOfResults();
 }
 

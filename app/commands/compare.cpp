@@ -217,6 +217,7 @@ std::function<int()> add(CLI::App& app) {
           "for --settle: the build of broadmark that ran A")
       ->needs(settle);
   addPlugins(app, options->plugins, "algorithms, for --settle")->needs(settle);
+  addExternal(app, options->plugins)->needs(settle);
   addPositive(app, "--max-seconds", "S", options->duel.max_seconds,
               "for --settle: end each duel after this many seconds")
       ->needs(settle);

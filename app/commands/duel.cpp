@@ -432,6 +432,7 @@ std::function<int()> add(CLI::App& app) {
     addSceneOptions(app, options->scene);
     addParameters(app, options->parameters);
     addPlugins(app, options->plugins);
+    addExternal(app, options->plugins);
   }
   {
     const HelpGroup group(app, "Algorithms");

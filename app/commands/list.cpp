@@ -220,6 +220,7 @@ std::function<int()> add(CLI::App& app) {
       "names", options->names, "only these algorithms: ids, families, patterns such as 'sap*'");
   suggestValues(names->type_name("NAME"), algorithmIds(builtinAlgorithms()));
   addPlugins(app, options->plugins);
+  addExternal(app, options->plugins);
   return [options] { return run(*options); };
 }
 

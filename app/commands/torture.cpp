@@ -410,6 +410,7 @@ std::function<int()> add(CLI::App& app) {
       ->type_name("CASE")
       ->excludes(algorithm);
   addPlugins(app, options->plugins, "algorithms");
+  addExternal(app, options->plugins);
   addPositive(app, "--minutes", "M", options->minutes, "duration; rounds in progress are finished");
   const auto set_rounds = [options = options.get()](const std::string& text) {
     options->rounds = parseInteger(text, "--rounds", 1, 1'000'000'000);

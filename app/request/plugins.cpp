@@ -23,6 +23,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "request/c_plugin.h"
 #include "request/cases.h"
+#include "request/external_program.h"
 #include "request/logged_pairs.h"
 #include "request/plugin_guard.h"
 
@@ -198,6 +199,7 @@ std::vector<Entry> entriesOf(const Plugin<Entry>& plugin, const std::string& fil
 /// have engines instead.
 std::vector<Algorithm> algorithmsIn(const std::string& file) {
   if (isPairLog(file)) return {loggedPairs(file)};
+  if (isExternal(file)) return {externalAlgorithm(file)};
   void* const library = load(file);
   std::vector<Algorithm> algorithms;
   PluginBuild build;
@@ -247,7 +249,7 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
 void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds) {
   if (!plugins.empty()) guardEngines(limit_seconds);
   for (const std::string& file : plugins) {
-    if (isPairLog(file)) continue;
+    if (isPairLog(file) || isExternal(file)) continue;
     const auto* plugin =
         exportOf<scenes::EngineEntry>(load(file), file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;

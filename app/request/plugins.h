@@ -22,7 +22,8 @@ struct SdkPlugin {
 std::vector<SdkPlugin> sdkPlugins();
 
 /// Returns the built-in algorithms, then those of these libraries (see broadmark/plugin.h and
-/// broadmark_plugin.h), which stay loaded until the program ends, and of pair logs ("pairs:FILE").
+/// broadmark_plugin.h), which stay loaded until the program ends, of pair logs ("pairs:FILE") and
+/// of external programs ("external:COMMAND").
 /// Throws InputError for a file that is not such a library, was built with other headers, has no
 /// algorithm, or one with an invalid or duplicate id, two parameters with one name, or a default
 /// out of range.

@@ -39,7 +39,10 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame, const QueryBatch
   const TransferTimes transfers = algorithm.transfers();
   times[Phase::upload] = transfers.upload_ns;
   times[Phase::download] = transfers.download_ns;
-  times[Phase::total] = nanoseconds(end - start);
+  times[Phase::update_objects] -= transfers.update_overhead_ns;
+  times[Phase::search_overlaps] -= transfers.search_overhead_ns;
+  times[Phase::total] =
+      nanoseconds(end - start) - transfers.update_overhead_ns - transfers.search_overhead_ns;
   return times;
 }
 

@@ -71,6 +71,11 @@ void warnOfThreads(Texts& warnings, const MachineState& machine, int threads) {
       fmt::format("{} threads share {} cores", threads, machine.usable_cores.size()));
 }
 
+void warnOfSelfTiming(Texts& warnings, const Algorithm& algorithm) {
+  if (!algorithm.traits.self_timed) return;
+  warnings.push_back(fmt::format("{}: times are those that the program reports", algorithm.id));
+}
+
 void warnOfBuilds(Texts& warnings, const Environment& environment, const Algorithm& algorithm) {
   if (environment.build_type == "Debug") {
     warnings.push_back("this is a Debug build of Broadmark: its algorithms are slow");
@@ -98,6 +103,7 @@ std::vector<std::string> noiseWarnings(const Environment& environment, const Mac
   warnOfSiblings(warnings, machine, test_case.threads);
   warnOfFrequency(warnings, environment, machine);
   warnOfThreads(warnings, machine, test_case.threads);
+  warnOfSelfTiming(warnings, test_case.algorithm);
   warnOfBuilds(warnings, environment, test_case.algorithm);
   return warnings;
 }

@@ -1,14 +1,17 @@
-// The algorithms of shared libraries with the C interface, in place of the built-in ones.
+// The algorithms of shared libraries with the C interface, and of programs, in place of the built-in
+// ones.
 
 #include <dlfcn.h>
 
 #include <stdexcept>
 
 #include "request/c_plugin.h"
+#include "request/external_program.h"
 
 namespace broadmark {
 
 static std::vector<Algorithm> load(const char* file) {
+  if (isExternal(file)) return {externalAlgorithm(file)};
   void* const library = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(::dlerror());
   const auto table =

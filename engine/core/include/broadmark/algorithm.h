@@ -54,6 +54,8 @@ struct AlgorithmTraits {
   /// The process-wide state that calls depend on, as in exclusive_use.h; "": none. Other code
   /// may use it between two calls.
   std::string exclusive = {};
+  /// Its times are those that an external program reports; its memory is not known.
+  bool self_timed = false;
   /// Parameter values for code that the default values hardly ever reach: tests run each
   /// configuration with these, too.
   ParameterValues rare_parameters = {};

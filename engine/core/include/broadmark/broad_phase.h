@@ -20,10 +20,13 @@ namespace broadmark {
 /// Receives a counter: its name ("swaps", "moves", "skipped subtrees") and value.
 using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
 
-/// Time spent on copies to and from a compute device in a frame, in nanoseconds.
+/// Time spent in a frame on the exchange with a compute device or an external program.
 struct TransferTimes {
   std::int64_t upload_ns = 0;
   std::int64_t download_ns = 0;
+  // Of phases 1 and 4: does not count (traits.self_timed).
+  std::int64_t update_overhead_ns = 0;
+  std::int64_t search_overhead_ns = 0;
 };
 
 /// A broad-phase collision detection algorithm.
@@ -77,7 +80,7 @@ class BroadPhase : public Parametrised {
   /// query's index; b, the body.
   virtual void searchQueries(const QueryBatch&) {}
 
-  /// Copy times within the phases of the last frame (algorithms on a compute device).
+  /// Times within the phases of the last frame (algorithms on a compute device, programs).
   [[nodiscard]] virtual TransferTimes transfers() const { return {}; }
 
   /// Draws the current acceleration structure.

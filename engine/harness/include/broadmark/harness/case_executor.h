@@ -89,6 +89,7 @@ class InProcessExecutor final : public CaseExecutor {
   InProcessExecutor(const InProcessExecutor&) = delete;
   InProcessExecutor& operator=(const InProcessExecutor&) = delete;
 
+  [[nodiscard]] const Case& testCase() const { return case_; }
   std::int64_t start(const SceneInfo& scene, const Frame& first) override;
   StepResult step(const Frame& frame) override;
   void stop() override;

@@ -1,0 +1,21 @@
+// Programs as algorithms (--external): frames in a shared file, calls and replies as lines of JSON
+// on standard input and output. docs/external.md states the protocol.
+#pragma once
+
+#include <string>
+
+#include "broadmark/algorithm.h"
+
+namespace broadmark {
+
+/// What stands before the command in --plugin.
+inline constexpr char kExternalPrefix[] = "external:";
+
+bool isExternal(const std::string& plugin);
+
+/// The algorithm of the program that a plug-in "external:COMMAND" starts, asked for its description.
+/// Each instance starts the program anew. Throws InputError if it cannot be started, or gives no
+/// such description.
+Algorithm externalAlgorithm(const std::string& plugin);
+
+}  // namespace broadmark
