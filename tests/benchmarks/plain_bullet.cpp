@@ -4,7 +4,10 @@
 // alternate frame by frame and are measured by the CPU time of their thread, so that background
 // load affects all of them. Exit status 1 if the engine is slower than the plain loop.
 //
-//   plain_bullet [--settings] [OBJECTS [FRAMES]]
+// With --record the plain loop runs other scenes and writes what to audit (docs/integrations.md):
+// the boxes and the pair cache of Bullet's tree and of its sweep, in the current folder.
+//
+//   plain_bullet [--settings|--record] [OBJECTS [FRAMES]]
 
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
@@ -24,7 +27,9 @@
 #include <string_view>
 #include <vector>
 
+#include "broadmark/error.h"
 #include "broadmark/scenes/scene.h"
+#include "integrations/bullet.h"
 
 // Margins are global to the process: each contestant sets them before its step.
 extern btScalar gContactBreakingThreshold;
@@ -162,7 +167,9 @@ class PlainBullet final : public PhysicsEngine {
     if (!setup.warm_start) info.m_solverMode &= ~SOLVER_USE_WARMSTARTING;
   }
   ~PlainBullet() override {
-    for (PlainBody& body : bodies_) world_.removeRigidBody(&body.body);
+    for (PlainBody& body : bodies_) {
+      if (body.body.isInWorld()) world_.removeRigidBody(&body.body);
+    }
     for (btRigidBody& wall : walls_) world_.removeRigidBody(&wall);
   }
   PlainBullet(const PlainBullet&) = delete;
@@ -187,7 +194,9 @@ class PlainBullet final : public PhysicsEngine {
   }
 
   void setLayers(const LayerMatrix&) override {}
-  void removeBody(PhysicsBody&) override {}  // not called by these scenes
+  void removeBody(PhysicsBody& body) override {
+    world_.removeRigidBody(&static_cast<PlainBody&>(body).body);
+  }
 
   void addWall(const HalfSpace& wall) override {
     auto& shape = wall_shapes_.emplace_back(toBullet(wall.normal), wall.offset);
@@ -214,6 +223,8 @@ class PlainBullet final : public PhysicsEngine {
   }
 
   [[nodiscard]] bool allAsleep() const override { return false; }
+
+  [[nodiscard]] btCollisionWorld& world() { return world_; }
 
   /// Mean penetration depth over all penetrating contact points.
   [[nodiscard]] double meanPenetration() {
@@ -271,16 +282,22 @@ class Contestant {
         engine_->addWall(wall);
       }
     }
-    bodies_.emplace(*engine_, SceneInfo{.objects = static_cast<std::uint32_t>(objects)});
+    SceneInfo info{.objects = static_cast<std::uint32_t>(objects)};
+    scene_->describe(settings_, info);
+    bodies_.emplace(*engine_, info);
+    scene_->prepare(settings_, random_);
     Stage stage = makeStage();
     scene_->populate(stage);
     scene_->start(stage);
   }
 
-  void advance(std::uint32_t frame) {
+  void advance(
+      std::uint32_t frame, const std::function<void(PhysicsEngine&)>& stepped = [](auto&) {}) {
     const double start = threadSeconds();
     engine_->step();
     seconds_ += threadSeconds() - start;
+    stepped(*engine_);
+    bodies_->record(frame);
     Stage stage = makeStage();
     scene_->act(stage, frame);
   }
@@ -343,18 +360,49 @@ void compareSettings(const std::string& scene, std::int64_t objects, std::uint32
   }
 }
 
+/// Records the boxes that Bullet's broad phase was given in each frame, and the pairs in its cache.
+void recordSession(const std::string& scene, const Setup& setup, std::int64_t objects,
+                   std::uint32_t frames) {
+  Contestant plain(setup.name, scene, objects, [&](const Settings& settings) {
+    return std::make_unique<PlainBullet>(settings, setup);
+  });
+  const std::string name = scene + "-" + setup.name;
+  broadmark_recorder recorder;
+  broadmark_record_begin(&recorder, name.c_str(), static_cast<std::uint32_t>(objects + 6));
+  for (std::uint32_t frame = 1; frame <= frames; ++frame) {
+    plain.advance(frame, [&](PhysicsEngine& engine) {
+      broadmarkRecord(recorder, dynamic_cast<PlainBullet&>(engine).world());
+    });
+  }
+  if (broadmark_record_end(&recorder) == 0) {
+    throw InputError(fmt::format("{}: {}", name, recorder.error));
+  }
+  fmt::print("written: {0}.broadmark, {0}.csv\n", name);
+}
+
 int number(std::span<char*> arguments, std::size_t index, int fallback) {
   return index < arguments.size() ? std::max(1, std::atoi(arguments[index])) : fallback;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   std::span<char*> arguments(argv + 1, static_cast<std::size_t>(argc - 1));
-  const bool settings = !arguments.empty() && arguments[0] == std::string_view("--settings");
-  if (settings) arguments = arguments.subspan(1);
-  const int objects = number(arguments, 0, settings ? 2000 : 8000);
+  const auto option = [&](std::string_view name) { return argc > 1 && argv[1] == name; };
+  const bool settings = option("--settings");
+  const bool record = option("--record");
+  if (settings || record) arguments = arguments.subspan(1);
+  const int objects = number(arguments, 0, settings || record ? 2000 : 8000);
   const auto frames = static_cast<std::uint32_t>(number(arguments, 1, settings ? 60 : 200));
+  if (record) {
+    const Setup setups[] = {{.name = "tree"},
+                            {.name = "tree-without-margin", .tree_margin = 0},
+                            {.name = "sweep", .sweep_and_prune = true}};
+    for (const char* scene : {"freefall", "gravity", "fountain"}) {
+      for (const Setup& setup : setups) recordSession(scene, setup, objects, frames);
+    }
+    return EXIT_SUCCESS;
+  }
   bool met = true;
   for (const char* scene : {"brownian", "gravity"}) {
     if (settings) {
@@ -364,4 +412,7 @@ int main(int argc, char** argv) {
     }
   }
   return met ? EXIT_SUCCESS : EXIT_FAILURE;
+} catch (const InputError& error) {
+  fmt::print(stderr, "plain_bullet: {}\n", error.what());
+  return 2;
 }
