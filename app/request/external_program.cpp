@@ -101,10 +101,9 @@ class Program {
                       "other output on standard output",
                       onOneLine(reply->substr(0, kShown))));
     }
-    if (json.contains("error")) {
-      throw std::runtime_error(JsonFields(json, "reply").text("error"));
-    }
-    return json;
+    if (!json.contains("error")) return json;
+    const Json& error = json.at("error");
+    throw std::runtime_error(error.is_string() ? error.get<std::string>() : compactJson(error));
   }
 
   SharedMemory frames;  ///< written here
