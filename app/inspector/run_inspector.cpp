@@ -172,6 +172,7 @@ void inspectOffscreen(Plan plan, const fs::path& script_file) {
   // Layout sizes are final only after the first pictures.
   for (int idle_pictures = 0; idle_pictures < 4 && !inspector.closing();) {
     if (script) play(*script, inspector, input);
+    if (script && script->player.done()) inspector.session().playback.pause();
     if (const auto size = script ? script->player.takeResize() : std::nullopt) {
       std::tie(width, height) = *size;
       target = std::make_unique<Framebuffer>(gl, width, height, 1);

@@ -391,6 +391,26 @@ ShrunkPart shrinkPart(IndexedFrames& source, std::uint32_t last, const SuspectQu
   return Shrinker(source, last, suspects, fails, options).shrink();
 }
 
+ShrunkPart shrinkFailure(const Case& test_case, IndexedFrames& source, std::uint32_t frame,
+                         const ShrinkOptions& options) {
+  CaseRun trial(test_case, RunPolicy::unlimited(CheckMode::off), options.make_executor,
+                options.cancelled);
+  const auto fails = [&](IndexedFrames& part) {
+    const std::uint32_t last = part.scene().frames;
+    bool runs = trial.start(part.scene(), part.rewind());
+    std::uint32_t index = 0;
+    while (runs && index < last) {
+      if (options.cancelled && options.cancelled()) throw Cancelled();
+      runs = trial.step(part.at(++index));
+    }
+    return !runs && trial.status() == Status::error && std::max(index, 1U) == last;
+  };
+  ShrinkOptions of_case = options;
+  of_case.subject = caseName(test_case);
+  return shrinkPart(
+      source, frame, [] { return std::vector<std::uint32_t>(); }, fails, of_case);
+}
+
 ShrunkCase shrinkCase(const Case& test_case, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options) {
   const SceneInfo& scene = source.scene();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/registry.h"
@@ -16,15 +17,19 @@
 namespace broadmark::scenes {
 namespace {
 
-/// Tolerated overlap as a fraction of a box's size: rounding may make touching bodies overlap.
+/// Overlap tolerated from brushes that place bodies side by side, as a fraction of a box's size:
+/// rounding may make touching bodies overlap.
 constexpr float kTouch = 1e-4F;
 /// Positions tried per body by scattering brushes.
 constexpr int kMaxAttempts = 100;
 
-/// The box shrunk by the tolerance.
-Aabb core(Aabb box) {
+/// The box shrunk by a share of its size, and by rounding errors of its position.
+Aabb shrunk(Aabb box, float share) {
+  if (share == 0) return box;
+  constexpr float kRounding = 4 * std::numeric_limits<float>::epsilon();
   for (int axis = 0; axis < 3; ++axis) {
-    const float skin = kTouch * (box.max[axis] - box.min[axis]);
+    const float skin = share * (box.max[axis] - box.min[axis]) +
+                       kRounding * std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
     box.min[axis] += skin;
     box.max[axis] -= skin;
   }
@@ -81,15 +86,15 @@ OccupiedSpace::OccupiedSpace(std::span<const AuthoredBody> bodies) {
 }
 
 void OccupiedSpace::add(const AuthoredBody& body) {
-  const Aabb box = core(tightBox(body.shape, body.pose));
+  const Aabb box = tightBox(body.shape, body.pose);
   const int exponent = exponentOf(box);
   const double scale = cellsPerUnit(exponent);
   const auto along = [&](int axis) { return cellAlong(box.min[axis], scale); };
   grids_[exponent][cellAt({along(0), along(1), along(2)})].push_back(box);
 }
 
-bool OccupiedSpace::overlaps(const AuthoredBody& body) const {
-  const Aabb box = core(tightBox(body.shape, body.pose));
+bool OccupiedSpace::overlaps(const AuthoredBody& body, float tolerance) const {
+  const Aabb box = shrunk(tightBox(body.shape, body.pose), tolerance);
   return std::ranges::any_of(
       grids_, [&](const auto& grid) { return overlapsIn(grid.second, grid.first, box); });
 }
@@ -128,6 +133,7 @@ Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const Occup
   const std::size_t count = checkedCount(brush.count(paint.scale * paint.scale * paint.scale));
   OccupiedSpace own;
   Stroke stroke;
+  const float tolerance = brush.scatters() ? 0 : 2 * kTouch;
   const int attempts = brush.scatters() && !paint.overlap ? kMaxAttempts : 1;
   for (std::size_t i = 0; i < std::min(count, max_bodies); ++i) {
     AuthoredBody body;
@@ -139,7 +145,8 @@ Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const Occup
       const Vec3 offset = brush.place(i, random);
       for (std::size_t axis = 0; axis < 3; ++axis)
         body.pose.position[axis] = at[axis] + offset[axis];
-      if (!paint.overlap && (occupied.overlaps(body) || own.overlaps(body))) continue;
+      if (!paint.overlap && (occupied.overlaps(body, tolerance) || own.overlaps(body, tolerance)))
+        continue;
       placed = true;
       if (!paint.overlap) own.add(body);
       stroke.bodies.push_back(body);

@@ -51,7 +51,7 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     SCOPED_TRACE(algorithm);
     session.tracks.clear();
     const RunProgress seen = findMismatch(algorithm);
-    session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / algorithm);
+    session.exportCase(seen.tracks[0].spec.test_case, failingIn(seen), directory / algorithm);
     waitUntilIdle();
     const CaseExport::Report report = waitForEnd();
     waitUntilIdle();
@@ -89,8 +89,8 @@ TEST_F(CaseExportTest, TheFirstWrongPairIsVisited) {
 
 TEST_F(CaseExportTest, BadFilesAreTold) {
   const RunProgress seen = findMismatch("faulty");
-  session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / "a.posrot");
-  session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / "no/a.aabbs");
+  session.exportCase(seen.tracks[0].spec.test_case, failingIn(seen), directory / "a.posrot");
+  session.exportCase(seen.tracks[0].spec.test_case, failingIn(seen), directory / "no/a.aabbs");
   waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 2U);
   EXPECT_THAT(session.notices.errors[0],
@@ -102,7 +102,7 @@ TEST_F(CaseExportTest, BadFilesAreTold) {
 TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
   const RunProgress seen = findMismatch("faulty");
   session.draft.simulate();
-  session.exportCase(seen.tracks[0].spec.test_case, seen.snapshot, directory / "a.aabbs");
+  session.exportCase(seen.tracks[0].spec.test_case, failingIn(seen), directory / "a.aabbs");
   waitUntilIdle();
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("another scene"));
@@ -142,7 +142,7 @@ TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
   Case right = seen.tracks[0].spec.test_case;
   right.algorithm = builtinAlgorithms().front();
   right.parameters.clear();
-  session.exportCase(right, seen.snapshot, directory / "a.aabbs");
+  session.exportCase(right, failingIn(seen), directory / "a.aabbs");
   waitUntilIdle();
   EXPECT_EQ(waitForEnd().state, State::failed);
   waitUntilIdle();

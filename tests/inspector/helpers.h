@@ -81,4 +81,11 @@ inline std::filesystem::path vanishingBodies(const TemporaryDirectory& directory
   return path;
 }
 
+/// The wrong answer in the snapshot.
+inline Session::FailingFrame failingIn(const RunProgress& seen) {
+  return {.source = seen.snapshot->source,
+          .frame = seen.snapshot->frame,
+          .difference = seen.snapshot->difference};
+}
+
 }  // namespace broadmark::tests

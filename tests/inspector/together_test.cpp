@@ -79,7 +79,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   ASSERT_TRUE(seen.snapshot->difference.isMismatch());
 
   startBake(session.jobs.get<BackgroundBake>(), bulletScene(), directory / "together.aabbs");
-  session.exportCase(faulty, seen.snapshot, directory / "case.aabbs");
+  session.exportCase(faulty, failingIn(seen), directory / "case.aabbs");
   RunProgress last;
   for (int round = 0; round < 50; ++round) {
     session.playback.seek(round % 2 == 0 ? 30 : 4);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "broadmark/frame.h"
@@ -30,10 +31,11 @@ struct ExportReport : TaskReport {
 
 using CaseExport = Task<ExportReport>;
 
-/// Starts an export. `difference` is the wrong answer of `test_case` on `source`, which no other
-/// thread may use. Throws InputError while another export is running.
+/// Starts an export. `test_case` fails in the last frame of `source`, which no other thread may
+/// use: `difference` is its wrong answer; nullopt: it ends with an error. Throws InputError while
+/// another export is running.
 void startExport(CaseExport& job, const Case& test_case, std::unique_ptr<IndexedFrames> source,
-                 FrameDifference difference, std::filesystem::path file,
+                 std::optional<FrameDifference> difference, std::filesystem::path file,
                  const ExecutorFactory& make_executor = makeInProcessExecutor);
 
 }  // namespace broadmark

@@ -27,10 +27,7 @@ class BenchmarkForm : BatchForm {
     const bool running = benchmark.running();
     if (drawStart(benchmark, "Run in the background; pause playback for accurate times",
                   "Stop; finished cases are kept")) {
-      session.notices.catchErrors([&] {
-        startBenchmark(benchmark, request(), session.tracks.algorithms(),
-                       session.jobs.make_executor);
-      });
+      askOrStart();
     }
     ImGui::BeginDisabled(running);
     drawOptions();
@@ -58,6 +55,40 @@ class BenchmarkForm : BatchForm {
     }
     std::ranges::sort(recordings);
     return recordings;
+  }
+
+  void start() {
+    session.notices.catchErrors([&] {
+      startBenchmark(session.jobs.get<BackgroundBenchmark>(), request(),
+                     session.tracks.algorithms(), session.jobs.make_executor);
+    });
+  }
+
+  /// Asks for another file rather than replacing one.
+  void askOrStart() {
+    if (!std::filesystem::exists(results_)) return start();
+    files.ask({.title = fmt::format("{} exists: write the results to", results_),
+               .purpose = FileDialog::Purpose::save,
+               .extensions = {".json"},
+               .suggestion = unusedName(results_),
+               .chosen = [this](const Path& path) {
+                 results_ = path.string();
+                 start();
+               }});
+  }
+
+  /// A path like this one without a file: "results-2.json".
+  static Path unusedName(const Path& path) {
+    std::string stem = path.stem().string();
+    if (const std::size_t digits = stem.find_last_not_of("0123456789");
+        digits != stem.npos && stem[digits] == '-' && digits + 1 < stem.size()) {
+      stem.erase(digits);
+    }
+    Path unused = path;
+    for (int number = 2; std::filesystem::exists(unused); ++number) {
+      unused.replace_filename(fmt::format("{}-{}{}", stem, number, path.extension().string()));
+    }
+    return unused;
   }
 
   void drawOptions() {

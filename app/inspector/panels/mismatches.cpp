@@ -77,6 +77,10 @@ class MismatchesPanel final : public Panel {
       ui.faint("it reports no pairs by design");
       return;
     }
+    if (hasFailed(track)) {
+      ui.paragraph(fmt::format("{}: {}", statusName(track.status), track.reason), ui.theme.bad);
+      return;
+    }
     if (!showsAnswerOf(track)) {
       ui.faint(progress->activity.empty() ? "no answer for this frame"
                                           : progress->activity.c_str());
@@ -152,21 +156,30 @@ class MismatchesPanel final : public Panel {
     if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
   }
 
+  /// The frame in which a track fails; its source is null if it does not.
+  Session::FailingFrame failingFrame(const TrackReport& track) {
+    if (hasFailed(track)) return {.source = progress->source, .frame = failedFrame(track)};
+    if (!showsAnswerOf(track) || !progress->snapshot->difference.isMismatch()) return {};
+    const Snapshot& snapshot = *progress->snapshot;
+    return {.source = snapshot.source, .frame = snapshot.frame, .difference = snapshot.difference};
+  }
+
   /// Draws the button that starts an export.
   void drawExportButton(const TrackReport& track) {
-    const bool wrong = showsAnswerOf(track) && progress->snapshot->difference.isMismatch() &&
-                       !session.jobs.get<CaseExport>().running();
-    if (wideButton("Export case…",
-                   "Write the smallest recording on which the algorithm is still wrong", wrong)) {
-      files.ask(
-          {.title = "Export the smallest recording that fails",
-           .purpose = FileDialog::Purpose::save,
-           .extensions = boxRecordingExtensions(),
-           .suggestion =
-               fmt::format("{}{}", partName(progress->scene), recordingExtension(progress->scene)),
-           .chosen = [this, test_case = track.spec.test_case, snapshot = progress->snapshot](
-                         const auto& file) { session.exportCase(test_case, snapshot, file); }});
+    const Session::FailingFrame failing = failingFrame(track);
+    const bool enabled = failing.source != nullptr && !session.jobs.get<CaseExport>().running();
+    if (!wideButton("Export case…",
+                    "Write the smallest recording on which the algorithm still fails", enabled)) {
+      return;
     }
+    files.ask({.title = "Export the smallest recording that fails",
+               .purpose = FileDialog::Purpose::save,
+               .extensions = boxRecordingExtensions(),
+               .suggestion = fmt::format("{}{}", partName(progress->scene),
+                                         recordingExtension(progress->scene)),
+               .chosen = [this, test_case = track.spec.test_case, failing](const auto& file) {
+                 session.exportCase(test_case, failing, file);
+               }});
   }
 
   void drawExport() {

@@ -32,7 +32,12 @@ class TimelinePanel final : public Panel {
     if (!progress->source) return;
     drawControls();
     const auto curves = [&] { drawCurves(); };
-    if (!session.timeline.span() || progress->tracks.empty()) {
+    // Statistics appear once the mouse is released: they move the plot, and a drag over it would
+    // end at another frame.
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left) || !session.timeline.span()) {
+      shows_span_ = session.timeline.span().has_value();
+    }
+    if (!shows_span_ || progress->tracks.empty()) {
       curves();
       return;
     }
@@ -197,6 +202,7 @@ class TimelinePanel final : public Panel {
   bool shows_pairs_ = true;
   bool shows_bodies_ = true;
   bool span_only_ = false;
+  bool shows_span_ = false;
   std::set<int> hidden_;
   std::vector<SpanStatistics> statistics_;  ///< by track
   FrameSpan summarised_;                    ///< span of statistics_

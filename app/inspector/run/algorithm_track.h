@@ -69,6 +69,11 @@ struct TrackReport : TrackState {
   }
 };
 
+/// Whether the algorithm ended with an error: a crash or an exception.
+inline bool hasFailed(const TrackState& track) { return track.status == Status::error; }
+/// The frame in which it did; 1 if that was the initial pose.
+inline std::uint32_t failedFrame(const TrackState& track) { return track.frame + 1; }
+
 /// Returns the track with this number, or null.
 const TrackReport* findTrack(const std::vector<TrackReport>& tracks, int number);
 

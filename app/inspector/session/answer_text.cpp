@@ -70,7 +70,10 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<TrackReport>& 
   } else {
     text.answer = fmt::format("the oracle finds {}", pairs);
     const TrackReport* requested = findTrack(tracks, chosen);
-    if (requested != nullptr) {
+    if (requested != nullptr && hasFailed(*requested)) {
+      text.comparison = fmt::format("{}: {}", ownerName(tracks, *requested), requested->reason);
+      text.verdict = AnswerText::Verdict::wrong;
+    } else if (requested != nullptr) {
       text.comparison = fmt::format("{} has no answer for frame {}", ownerName(tracks, *requested),
                                     snapshot.frame);
     } else if (!tracks.empty()) {

@@ -38,9 +38,11 @@ class Mismatches {
   Mismatches(Playback& playback, TrackList& tracks, BodySelection& selection, Notices& notices)
       : playback_(playback), tracks_(tracks), selection_(selection), notices_(notices) {}
 
-  /// Handles a stop: shows its frame, then flies to the first wrong pair.
+  /// Handles a stop: shows its frame, then flies to the first wrong pair. An error of a track also
+  /// stops the playback.
   void advance(const RunProgress& progress) {
     handleStop(progress);
+    handleErrors(progress);
     if (!playback_.hasReached(progress)) return;
     flyToStop(*progress.snapshot);
     if (std::exchange(searching_, false)) {
@@ -81,6 +83,7 @@ class Mismatches {
   void clearStop() {
     acknowledged_.reset();
     handled_stop_.reset();
+    failed_.clear();
   }
 
   /// Call when another source is shown: clears all state.
@@ -115,6 +118,25 @@ class Mismatches {
                        Severity::error);
   }
 
+  void handleErrors(const RunProgress& progress) {
+    if (progress.source != playback_.source()) return;
+    for (const TrackReport& track : progress.tracks) {
+      if (!hasFailed(track)) {
+        std::erase(failed_, track.spec);
+        continue;
+      }
+      if (std::ranges::find(failed_, track.spec) != failed_.end()) continue;
+      failed_.push_back(track.spec);
+      if (stop_at_mismatch) {
+        playback_.goTo(failedFrame(track));
+        tracks_.show(track.spec.number);
+        notices_.raisePanel("Mismatches");
+      }
+      notices_.setStatus(fmt::format("{}: {}", track.spec.test_case.algorithm.id, track.reason),
+                         Severity::error);
+    }
+  }
+
   void flyToStop(const Snapshot& snapshot) {
     if (!pending_stop_ || !snapshot.checked || snapshot.frame != pending_stop_->frame ||
         snapshot.track != pending_stop_->track) {
@@ -132,6 +154,7 @@ class Mismatches {
   std::optional<std::uint32_t> acknowledged_;
   std::optional<RunProgress::Stop> handled_stop_;
   std::optional<RunProgress::Stop> pending_stop_;  ///< its pair has not been shown yet
+  std::vector<TrackSpec> failed_;                  ///< tracks with errors that have been shown
   bool searching_ = false;
 };
 

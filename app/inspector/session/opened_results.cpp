@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "broadmark/algorithms.h"
 #include "broadmark/harness/runner.h"
 #include "broadmark/statistics/statistics.h"
 #include "sources/results.h"
@@ -48,6 +49,12 @@ std::string sceneOf(const Row& row) {
   const std::string size = fmt::format("/N{}/", row.result.recording.scene.objects);
   if (const std::size_t at = id.find(size); at != id.npos) id.erase(at, size.size() - 1);
   return id;
+}
+
+bool isSelfCheck(const CaseResult& result) {
+  static const std::vector<Algorithm> known = builtinAlgorithms();
+  const Algorithm* algorithm = findAlgorithm(result.algorithm, known);
+  return algorithm != nullptr && !algorithm->traits.finds_pairs;
 }
 
 double exponentOf(const std::vector<ScalingCurve::Point>& points) {
@@ -178,6 +185,10 @@ void OpenedResults::updateList() {
     values.push_back(sorted_by_->shown.order
                          ? sorted_by_->shown.order(row.result)
                          : sorted_by_->shownValueOf(row.result, row.summary.value_or(Summary{})));
+  }
+  // Self-checks find no pairs: their times are no rivals.
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (sorted_by_->unit == ColumnUnit::seconds && isSelfCheck(rows_[i].result)) values[i] = {};
   }
   const ColumnValue unknown;
   std::ranges::stable_sort(listed_, [&](std::size_t a, std::size_t b) {

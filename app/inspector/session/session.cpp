@@ -108,17 +108,16 @@ void Session::saveRecording(const fs::path& path) {
   });
 }
 
-void Session::exportCase(const Case& test_case, std::shared_ptr<const Snapshot> snapshot,
-                         fs::path file) {
+void Session::exportCase(const Case& test_case, const FailingFrame& failing, fs::path file) {
   const SceneInfo scene = playback.scene();
   if (!file.has_extension()) file += recordingExtension(scene);
   notices.catchErrors([&] {
-    requireExportable(file, snapshot->source->recording, scene);
-    if (!open_frames_ || snapshot->source != playback.source()) {
+    requireExportable(file, failing.source->recording, scene);
+    if (!open_frames_ || failing.source != playback.source()) {
       throw InputError("exporting a case: another scene has been opened");
     }
-    startExport(jobs.get<CaseExport>(), test_case, open_frames_(snapshot->frame),
-                snapshot->difference, file, jobs.make_executor);
+    startExport(jobs.get<CaseExport>(), test_case, open_frames_(failing.frame), failing.difference,
+                file, jobs.make_executor);
   });
 }
 

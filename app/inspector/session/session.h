@@ -44,9 +44,14 @@ class Session {
   void play(bool on);
   /// Saves the available frames as a recording.
   void saveRecording(const std::filesystem::path& path);
-  /// Starts to export the case that is wrong in this snapshot; adds a missing extension to `file`.
-  void exportCase(const Case& test_case, std::shared_ptr<const Snapshot> snapshot,
-                  std::filesystem::path file);
+  /// Where a case fails.
+  struct FailingFrame {
+    std::shared_ptr<const FrameProviderRequest> source;
+    std::uint32_t frame = 0;
+    std::optional<FrameDifference> difference = {};  ///< nullopt: it ends with an error
+  };
+  /// Starts to export a failing case; adds a missing extension to `file`.
+  void exportCase(const Case& test_case, const FailingFrame& failing, std::filesystem::path file);
   /// Starts a duel of the tracks on the available frames, with this time limit.
   void startDuel(double max_seconds);
 

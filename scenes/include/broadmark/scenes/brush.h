@@ -59,7 +59,7 @@ struct Stroke {
   std::size_t left_out = 0;  ///< bodies without room
 };
 
-/// The space occupied by bodies: their tight boxes, minus a tolerance. Uses a hash grid for
+/// The space occupied by bodies: their tight boxes. Uses a hash grid for
 /// each power of two of box sizes, so that neither a floor under thousands of small bodies nor dust
 /// among large bodies crowds a cell: O(1) per body unless sizes differ by orders of magnitude, and
 /// never more than a comparison with every box.
@@ -68,7 +68,8 @@ class OccupiedSpace {
   explicit OccupiedSpace(std::span<const AuthoredBody> bodies = {});
 
   void add(const AuthoredBody&);
-  [[nodiscard]] bool overlaps(const AuthoredBody&) const;
+  /// Whether its tight box, shrunk on every side by `tolerance` times its size, overlaps any.
+  [[nodiscard]] bool overlaps(const AuthoredBody&, float tolerance) const;
 
  private:
   /// Boxes by a hash of their lower corner's cell; hashes may collide.
@@ -82,9 +83,9 @@ class OccupiedSpace {
 };
 
 /// Places up to `max_bodies` bodies around the point `at`. Unless the paint allows overlaps, no
-/// tight box overlaps another placed body's, or `occupied`, beyond the tolerance: a scattering
-/// brush tries other positions, and omits a body without room. Deterministic. O(placed). Throws
-/// InputError if the brush would place more than kMaxBodies.
+/// tight box overlaps another placed body's, or `occupied`, but for rounding where a brush places
+/// bodies side by side: a scattering brush tries other positions, and omits a body without room.
+/// Deterministic. O(placed). Throws InputError if the brush would place more than kMaxBodies.
 Stroke paint(const Brush&, const Paint&, const Vec3& at, const OccupiedSpace& occupied,
              std::size_t max_bodies = std::numeric_limits<std::size_t>::max());
 /// Places bodies among the `present` bodies. O(present + placed).

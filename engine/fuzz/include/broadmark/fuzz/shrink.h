@@ -69,4 +69,9 @@ struct ShrunkCase : ShrunkPart {
 ShrunkCase shrinkCase(const Case& test_case, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options = {});
 
+/// As shrinkCase(), for a case that ends with an error in frame `frame`: a crash or an exception.
+/// options.make_executor must survive it.
+ShrunkPart shrinkFailure(const Case& test_case, IndexedFrames& source, std::uint32_t frame,
+                         const ShrinkOptions& options = {});
+
 }  // namespace broadmark
