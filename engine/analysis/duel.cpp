@@ -79,6 +79,7 @@ class Duel {
     for (bool first = true; !ended_; first = false) {
       if (process_seconds_ >= kProcessSeconds || first) startProcesses(first);
       runPass(frames, first);
+      ended_ |= isTimeUp();
       for (const auto& case_run : runs_) case_run->stopChecking();
       if (frames.scene().frames == 0) ended_ = true;
       if (result_.ok() && result_.rounds() > 0) review();
@@ -93,6 +94,8 @@ class Duel {
   [[nodiscard]] double elapsed() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
+
+  [[nodiscard]] bool isTimeUp() const { return elapsed() >= options_.max_seconds; }
 
   /// Gives each side a new executor. Rounds before and after are independent.
   void startProcesses(bool checked) {
@@ -164,7 +167,7 @@ class Duel {
   void countRound() {
     result_.seconds = elapsed();
     if (options_.progress) options_.progress(result_);
-    ended_ = result_.seconds >= options_.max_seconds;
+    ended_ = !options_.whole_passes && isTimeUp();
   }
 
   /// Decides whether to end the duel. Its end is the last review.

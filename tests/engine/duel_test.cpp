@@ -161,6 +161,17 @@ TEST(Duel, IsReviewedAfterWholePasses) {
   }
 }
 
+TEST(Duel, EndsWithTheRoundOrThePassInWhichTimeIsUp) {
+  const auto rounds = [](bool whole_passes) {
+    ChainSource frames(4, 5);
+    return runDuel({{"a", caseOf()}, {"b", caseOf()}}, frames,
+                   {.max_seconds = 0, .whole_passes = whole_passes})
+        .rounds();
+  };
+  EXPECT_EQ(rounds(false), 1U);
+  EXPECT_EQ(rounds(true), 5U);
+}
+
 TEST(Duel, RanksWithTies) {
   const std::vector<DuelRank> ranking =
       duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, {.precision = 0.03}).ranking;

@@ -38,6 +38,7 @@ struct DuelOptions {
   /// Probability that the interval of a ratio misses it in any of the reviews.
   double error_rate = 0.05;
   double max_seconds = 60;            ///< time limit; the round that exceeds it is completed
+  bool whole_passes = false;          ///< instead, the pass that exceeds it is completed
   std::uint64_t seed = 1;             ///< for the order within rounds
   CheckMode check = CheckMode::hash;  ///< in the first pass; later passes repeat the answers
   /// Called after each round with the preliminary result.
