@@ -166,6 +166,20 @@ TEST_F(Interruption, OfADuelWritesNothing) {
   EXPECT_THAT(files(), IsEmpty());
 }
 
+TEST_F(Interruption, OfAdviceBeforeTheFirstAnswerWritesNothing) {
+  Program endless(directory_,
+                  {"advise", "freefall", "--objects", "20", "--frames", "20", "--algorithm",
+                   "bf,unruly", "--plugin", places::unrulyPlugin(), "--param", "deed=print",
+                   "--max-seconds", "100000", "--json", "advice.json", "--quiet"});
+  ASSERT_TRUE(endless.waitForText("printed on purpose", 20));
+  endless.signal(SIGINT);
+  const ProgramResult ended = endless.wait();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_THAT(ended.err, HasSubstr("broadmark: interrupted"));
+  EXPECT_EQ(ended.out, "");
+  EXPECT_THAT(files(), IsEmpty());
+}
+
 // The first case is saved although the second case of the same recording takes long.
 TEST_F(Interruption, AKilledRunLosesNoFinishedCase) {
   Program two(directory_, {"--headless", "freefall", "--objects", "10", "--frames", "100",
