@@ -1,9 +1,9 @@
 // broadmark advise: determines which algorithm, with which parameters, is fastest on a recording.
 //
-// For each answer and number of threads: all candidates run a few frames, and the slow ones are
-// dropped; the others are halved in short duels; the parameters of the best ones are varied, each
-// alone, then the better values together; and the last few fight a long duel. Costs are those of a
-// whole recording: the mean over the frames of their minimum times.
+// For every answer and number of threads: all candidates run a few frames, and the slow ones are
+// dropped; the others are halved in short duels; the parameters of the best candidates are varied,
+// first each alone, then together; and the finalists fight a long duel. The cost of a candidate is
+// that of the whole recording: the mean over the frames of their minimum times.
 
 #include <fmt/format.h>
 
@@ -130,7 +130,8 @@ class Adviser {
     return {threads.begin(), threads.end()};
   }
 
-  /// Cases for so many threads. On one thread, parallel variants equal others of their family.
+  /// The cases for that number of threads. On one thread, parallel variants equal others of their
+  /// family.
   [[nodiscard]] std::vector<Candidate> candidatesOf(const Contest& contest) const {
     const auto is_parallel = [](const Case& test_case) {
       return test_case.algorithm.traits.parallel;
@@ -178,18 +179,21 @@ class Adviser {
         halve(candidates.size(), kTuned, [&](const std::vector<std::size_t>& which) {
           std::vector<Candidate> sides;
           for (const std::size_t i : which) sides.push_back(candidates[i]);
-          return costsOf(duels_.measure(sides, left() / 6));
+          // Without time for a duel, the few frames decide.
+          if (CandidateDuels::minSeconds(sides) <= left()) {
+            return costsOf(duels_.measure(sides, left() / 6));
+          }
+          std::vector<double> costs;
+          for (const Candidate& side : sides) costs.push_back(side.seconds);
+          return costs;
         });
     std::vector<Candidate> tuned;
     for (const std::size_t i : best) tuned.push_back(candidates[i]);
     const std::vector<Candidate> defaults = tuned;
     std::size_t settings = 0;
     for (int round = 0; round < kTuningRounds; ++round) {
-      const std::size_t varied = tune(tuned, left() / 4);
-      settings += varied;
-      if (varied == 0) break;
+      for (Candidate& candidate : tuned) settings += tune(candidate, left() / (4 * kTuned));
     }
-
     Advice advice = judge(contest, tuned, defaults, std::max(left(), seconds / 4));
     advice.effort = fmt::format(
         "Tried: {} on a few frames, the best {} in duels, {} of parameters; the last duel on {}.",
@@ -214,47 +218,38 @@ class Adviser {
     return costs;
   }
 
-  /// Varies each parameter alone, unless the user has set it, and gives each candidate the values
-  /// that made it faster. Returns the number of variants; 0 if there are none left to try.
-  std::size_t tune(std::vector<Candidate>& candidates, double seconds) {
-    struct Variant {
-      std::size_t of;  ///< candidate
-      std::string parameter;
-      std::string value;
-    };
-    std::vector<Candidate> sides = candidates;
-    std::vector<Variant> variants;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const auto instance = makeInstance(candidates[i].test_case);
-      instance->visitParameters([&](const Parameter& parameter) {
-        const std::string name(parameter.name);
-        if (options_.parameters.contains(name) ||
-            options_.parameters.contains(candidates[i].test_case.algorithm.id + ":" + name)) {
-          return;
-        }
-        for (const std::string& value : valuesAround(parameter, body_extent_)) {
-          Candidate side = candidates[i];
-          side.test_case.parameters[name] = value;
-          if (!tried_.insert(nameOf(side)).second) continue;
-          sides.push_back(std::move(side));
-          variants.push_back({i, name, value});
-        }
-      });
-    }
-    if (variants.empty()) return 0;
+  /// Varies every parameter alone, unless the user has set it, and gives the candidate the values
+  /// that made it faster. Returns the number of new variants; 0 if there is no time for them.
+  std::size_t tune(Candidate& candidate, double seconds) {
+    const ParameterValues& given = options_.parameters;
+    std::vector<Candidate> sides = {candidate};
+    std::vector<std::pair<std::string, std::string>> variants;  // parameter and value
+    makeInstance(candidate.test_case)->visitParameters([&](const Parameter& parameter) {
+      const std::string name(parameter.name);
+      const std::string qualified = candidate.test_case.algorithm.id + ":" + name;
+      if (given.contains(name) || given.contains(qualified)) return;
+      for (const std::string& value : valuesAround(parameter, body_extent_)) {
+        Candidate side = candidate;
+        side.test_case.parameters[name] = value;
+        if (!tried_.insert(nameOf(side)).second) continue;
+        sides.push_back(std::move(side));
+        variants.emplace_back(name, value);
+      }
+    });
+    if (variants.empty() || CandidateDuels::minSeconds(sides) > seconds) return 0;
     const std::vector<std::optional<CaseResult>> results = duels_.measure(sides, seconds);
-    std::map<std::pair<std::size_t, std::string>, double> best;  // by candidate and parameter
-    for (std::size_t i = 0; i < variants.size(); ++i) {
-      const auto& [of, parameter, value] = variants[i];
-      const std::optional<CaseResult>& before = results[of];
-      const std::optional<CaseResult>& after = results[candidates.size() + i];
-      if (!before || !after) continue;
+    const std::optional<CaseResult>& before = results.front();
+    std::map<std::string, double> least_cost;  // by parameter
+    for (std::size_t i = 0; before && i < variants.size(); ++i) {
+      const auto& [parameter, value] = variants[i];
+      const std::optional<CaseResult>& after = results[i + 1];
+      if (!after) continue;
       double& least =
-          best.try_emplace({of, parameter}, costOf(*before) / (1 + kAdviceMargin)).first->second;
-      if (costOf(*after) >= least || ratioWithinRun(*before, *after)->ratio.ci95.high >= 1)
-        continue;
+          least_cost.try_emplace(parameter, costOf(*before) / (1 + kAdviceMargin)).first->second;
+      if (costOf(*after) >= least) continue;
+      if (ratioWithinRun(*before, *after)->ratio.ci95.high >= 1) continue;
       least = costOf(*after);
-      candidates[of].test_case.parameters[parameter] = value;
+      candidate.test_case.parameters[parameter] = value;
     }
     return variants.size();
   }
@@ -272,12 +267,12 @@ class Adviser {
       if (results[i]) side_of.emplace(nameOf(sides[i]), i);
     }
     const auto ratio = [&](std::size_t of, std::size_t to) {
-      RunRatio ratio = *ratioWithinRun(*results[to], *results[of]);
+      RunRatio found = *ratioWithinRun(*results[to], *results[of]);
       if (of != to && results[of]->repetitions.size() < 2) {
-        ratio.ratio.ci95.low /= kProcessDifference;
-        ratio.ratio.ci95.high *= kProcessDifference;
+        found.ratio.ci95.low /= kProcessDifference;
+        found.ratio.ci95.high *= kProcessDifference;
       }
-      return ratio;
+      return found;
     };
     std::vector<std::size_t> chosen;
     std::map<std::size_t, std::size_t> default_of;  // of a side with better parameters
@@ -378,10 +373,11 @@ std::function<int()> add(CLI::App& app) {
   }
   CLI::Option* const answer = [&] {
     const HelpGroup group(app, "Algorithms");
-    addVariants(app, options->cases);
-    const std::vector<CLI::Option*> answers = addAnswer(app, options->cases.answer);
+    addVariants(app, options->cases)[1]->description(
+        "threads of parallel variants (default: one, and all cores)");
+    CLI::Option* const kind = addAnswer(app, options->cases.answer).front();
     addDevice(app, options->cases.device);
-    return answers.front();
+    return kind->default_str("both");
   }();
   {
     const HelpGroup group(app, "How to measure");

@@ -20,6 +20,8 @@ namespace {
 constexpr double kSlow = 4;
 constexpr std::size_t kMinDuellists = 6;
 constexpr std::size_t kMaxDuellists = 12;
+/// Of a duel.
+constexpr double kMinFrames = 16;
 
 using Clock = std::chrono::steady_clock;
 
@@ -126,10 +128,15 @@ Status CandidateDuels::runBriefly(Candidate& candidate, IndexedFrames& frames,
   return Status::ok;
 }
 
+double CandidateDuels::minSeconds(const std::vector<Candidate>& candidates) {
+  double seconds = 0;
+  for (const Candidate& candidate : candidates) seconds += kMinFrames * candidate.wall_seconds;
+  return seconds;
+}
+
 std::vector<std::optional<CaseResult>> CandidateDuels::measure(
     const std::vector<Candidate>& candidates, double seconds) {
   constexpr double kPasses = 3;
-  constexpr double kMinFrames = 16;
   std::vector<std::optional<CaseResult>> results(candidates.size());
   std::vector<std::size_t> left(candidates.size());
   std::iota(left.begin(), left.end(), std::size_t{0});

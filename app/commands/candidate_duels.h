@@ -39,8 +39,11 @@ class CandidateDuels {
   /// may take long: what is killed is tried again only if the fastest takes nearly as long.
   void screen(std::vector<Candidate>& candidates);
 
-  /// Times of the candidates in a duel of about so many seconds, on as many frames as that allows;
-  /// nullopt for one that failed.
+  /// The minimum time of a duel, about.
+  static double minSeconds(const std::vector<Candidate>&);
+
+  /// Times of the candidates in a duel of about that many seconds, on as many frames as that
+  /// allows; nullopt for one that failed.
   std::vector<std::optional<CaseResult>> measure(const std::vector<Candidate>&, double seconds);
 
   /// The frames of the last duel: "all frames (60), 5 times".

@@ -4,8 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -29,7 +30,7 @@ std::string slownessText(const Estimate& ratio) {
   const Verdict verdict = verdictOn(ratio.ci95, kAdviceMargin);
   if (verdict != Verdict::slower) {
     return fmt::format("{} it ({} times its time, {})",
-                       verdict == Verdict::same ? "level with" : "not told apart from",
+                       verdict == Verdict::same ? "level with" : "indistinguishable from",
                        ratioText(ratio.value), interval);
   }
   if (ratio.value >= 2) {
@@ -96,7 +97,8 @@ std::string codeLines(const Case& test_case) {
     text += fmt::format("\nbroadmark::setParameters(*broad_phase, {{{{\"{}\", \"{}\"}}}});", name,
                         value);
   }
-  return text;
+  const bool has_events = test_case.answer == AnswerKind::events && algorithm.traits.events;
+  return text + (has_events ? "\nbroad_phase->reportEvents();" : "");
 }
 
 std::string indented(const std::string& lines) {

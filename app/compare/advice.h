@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,8 @@ std::vector<std::size_t> halve(std::size_t count, std::size_t keep, const Measur
 /// Frames that represent a recording: some stretches of it, evenly spread, or all.
 struct Excerpt {
   std::vector<std::uint32_t> frames;  ///< ascending; the first is the initial pose
-  /// Of each further frame: whether its time counts. Those at the beginning of a stretch, to which
-  /// bodies jump, do not.
+  /// Whether the time of a further frame counts: not at the beginning of a stretch, to which bodies
+  /// jump.
   std::vector<bool> counts;
   std::size_t stretches = 1;
 };
@@ -39,8 +40,8 @@ Excerpt excerptOf(std::uint32_t frames, std::uint32_t wanted);
 /// text.
 std::vector<std::string> valuesAround(const Parameter&, double length);
 
-/// The times of a side that has run an excerpt, in whole passes, in so many processes: for each
-/// process, or about that, a repetition with the minimum time of each frame that counts.
+/// The times of a side that has run an excerpt in whole passes, in `processes` processes: for every
+/// process, approximately, a repetition with the minimum time of each frame that counts.
 std::vector<Repetition> repetitionsOf(const DuelResult::Side&, const Excerpt&,
                                       std::size_t processes);
 

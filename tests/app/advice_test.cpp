@@ -123,7 +123,7 @@ TEST(Repetitions, HoldTheMinimaOfTheFramesThatCountInEachProcess) {
   EXPECT_THAT(totals({1e-6, 9, 2e-6}, 2), ElementsAre(ElementsAre(1000, 2000)));
 }
 
-/// A finalist that takes so many times the 2 µs of the first.
+/// A finalist that takes `ratio` times the 2 µs of the first.
 Finalist finalistOf(const std::string& name, Estimate ratio = {1, {1, 1}}) {
   return {.test_case = caseNamed(name, {}),
           .ratio = {.before = 2e-6, .after = 2e-6 * ratio.value, .ratio = ratio, .drift = {}}};
@@ -161,7 +161,7 @@ TEST(AdviceText, AdmitsThatTwoAreLevel) {
   EXPECT_THAT(text({1.005, {0.99, 1.015}}),
               AllOf(HasSubstr("kd is among the fastest"), HasSubstr("level with it")));
   EXPECT_THAT(text({1.2, {0.9, 1.5}}),
-              AllOf(HasSubstr("kd is among the fastest"), HasSubstr("not told apart from it")));
+              AllOf(HasSubstr("kd is among the fastest"), HasSubstr("indistinguishable from it")));
   EXPECT_THAT(textOf({.finalists = {finalistOf("kd")}}), HasSubstr("There is no second."));
 }
 

@@ -95,7 +95,7 @@ TEST_F(Advise, OnQueries) {
 
 TEST_F(Advise, BadInputIsRefused) {
   expectRefusal(adviceOn({"--algorithm", "sapp"}), {"--algorithm", "'sapp'", "'sap'"});
-  expectRefusal(adviceOn({"--max-seconds", "0"}), {"--max-seconds", "'0'"});
+  expectRefusal({"advise", "freefall", "--max-seconds", "0"}, {"--max-seconds", "'0'"});
   expectRefusal(adviceOn({"--param", "densty=1"}), {"'densty'", "'density'"});
   expectRefusal(adviceOn({"--plugin", "gone.so"}), {"gone.so"});
   expectRefusal({"advise", "gone.aabbs"}, {"gone.aabbs"});
