@@ -381,8 +381,9 @@ std::function<int()> add(CLI::App& app) {
   }();
   {
     const HelpGroup group(app, "How to measure");
-    addPositive(app, "--max-seconds", "S", options->max_seconds,
-                "time for the advice as a whole, divided among its answers");
+    addPositive(
+        app, "--max-seconds", "S", options->max_seconds,
+        "time for the advice as a whole, divided among its answers; many bodies may take longer");
   }
   addHosts(app, options->hosts);
   add_opening(addReadingOptions(app, options->reading));

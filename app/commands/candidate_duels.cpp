@@ -61,7 +61,7 @@ CandidateDuels::CandidateDuels(const HostOptions& hosts, IndexedFrames& recordin
       make_executor_(executorFactory(hosts)) {}
 
 void CandidateDuels::screen(std::vector<Candidate>& candidates) {
-  constexpr double kFirstLimit = 0.25;
+  constexpr double kFirstLimit = 1;  // initialisation takes longer than a frame
   constexpr double kGrowth = 4;
   constexpr std::uint32_t kFrames = 32;
   const Excerpt excerpt = excerptOf(recording_.scene().frames, kFrames);
