@@ -369,7 +369,7 @@ std::function<int()> add(CLI::App& app) {
                   sceneIds());
     add_opening(addSceneOptions(app, options->scene));
     addParameters(app, options->parameters);
-    add_opening({addPlugins(app, options->plugins)});
+    add_opening({addPlugins(app, options->plugins), addExternal(app, options->plugins)});
   }
   CLI::Option* const answer = [&] {
     const HelpGroup group(app, "Algorithms");
