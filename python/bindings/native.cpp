@@ -115,9 +115,9 @@ std::uint64_t memoryOfWorkers() {
   return std::min<std::uint64_t>(machineMemory(), own.rlim_cur);
 }
 
-/// Runs the case in this process, unless its library might end that.
+/// Runs the case in this process, unless its library might end that, or links to the program.
 ExecutorFactory executorsFor(const Algorithm& algorithm, const std::string& program) {
-  if (!algorithm.traits.library_aborts) return makeInProcessExecutor;
+  if (!algorithm.traits.library_aborts && algorithm.plugin.empty()) return makeInProcessExecutor;
   if (program.empty()) {
     throw InputError(algorithm.id +
                      ": runs in a process of the program broadmark, which was not found: build it, "
@@ -158,6 +158,20 @@ std::vector<Pair> findPairs(std::span<const float> numbers, const Case& test_cas
   return pairs;
 }
 
+/// By the algorithm of a plug-in, which only the worker process loads.
+std::vector<Pair> findPairsByPlugin(std::span<const float> numbers, const Case& test_case,
+                                    const std::string& program) {
+  const std::vector<Aabb> boxes = copied(numbers);
+  const auto executor = executorsFor(test_case.algorithm, program)(test_case, isInterrupted);
+  try {
+    executor->start(sceneOf(boxes), {0, boxes, std::span<const std::uint32_t>()});
+    executor->step({1, boxes, std::span<const std::uint32_t>()});
+    return overlapping(executor->answer(), boxes, false);
+  } catch (const std::runtime_error& error) {  // the plug-in's, or the end of its process
+    throw InputError(test_case.algorithm.id + ": " + error.what());
+  }
+}
+
 /// The array takes ownership of the pairs.
 Pairs asArray(std::vector<Pair> pairs) {
   const auto* owned = new std::vector<Pair>(std::move(pairs));
@@ -184,14 +198,20 @@ ParameterValues withCurrentNames(const ParameterValues& parameters) {
 
 Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
                  const std::string& isa, const ParameterValues& parameters,
-                 const std::string& program) {
+                 const std::string& plugin, const std::string& program) {
+  const bool built_in = plugin.empty();
   const Case test_case =
-      makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", withCurrentNames(parameters));
+      built_in
+          ? makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", withCurrentNames(parameters))
+          : Case{.algorithm = {.id = algorithm, .plugin = plugin},
+                 .isa = isaOf(isa),
+                 .threads = threads,
+                 .parameters = parameters};
   const std::span<const float> numbers(boxes.data(), static_cast<std::size_t>(boxes.size()));
   std::vector<Pair> pairs;
   try {
     const py::gil_scoped_release release;
-    pairs = findPairs(numbers, test_case, program);
+    pairs = (built_in ? findPairs : findPairsByPlugin)(numbers, test_case, program);
   } catch (const Cancelled&) {
     throw py::error_already_set();
   }
@@ -222,7 +242,8 @@ void translateError(std::exception_ptr error) {
 PYBIND11_MODULE(_native, module) {
   py::register_local_exception_translator(&broadmark::translateError);
   module.def("overlaps", &broadmark::overlapsOf, py::arg("boxes").noconvert(), py::arg("algorithm"),
-             py::arg("threads"), py::arg("isa"), py::arg("parameters"), py::arg("program"));
+             py::arg("threads"), py::arg("isa"), py::arg("parameters"), py::arg("plugin"),
+             py::arg("program"));
   module.def("algorithms", [] { return broadmark::idsOf(broadmark::algorithmsThatFindPairs()); });
   broadmark::defineBroadPhase(module);
 }

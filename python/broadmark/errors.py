@@ -1,7 +1,7 @@
 """Errors that a user can fix."""
 
 
-class InputError(Exception):
+class InputError(ValueError):
     """Bad input. The message is a line that names the file or option, the error and the expected input."""
 
     def __init__(self, text: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import pathlib
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -39,9 +40,15 @@ def sync_folder(path: pathlib.Path) -> None:
 
 
 def write_text(path: str | None, text: str) -> None:
-    """Writes a text to a file; prints it if `path` is None."""
-    if path is None:
-        print(text, end="")
+    """Writes a text to a file; prints it if `path` is None or "-"."""
+    write_bytes(path or "-", text.encode())
+
+
+def write_bytes(path: str, content: bytes) -> None:
+    """Writes a file, or standard output if `path` is "-"."""
+    if path == "-":
+        sys.stdout.flush()
+        sys.stdout.buffer.write(content)
         return
     with atomic_write(path) as file:
-        file.write(text.encode())
+        file.write(content)

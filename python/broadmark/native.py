@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import os
 import pathlib
 from collections.abc import Iterator
 from types import ModuleType
@@ -24,14 +25,16 @@ def overlaps(
     threads: int | None = None,
     isa: str = "auto",
     parameters: dict[str, Any] | None = None,
+    plugin: str | os.PathLike[str] | None = None,
 ) -> npt.NDArray[np.uint32]:
     """All pairs of overlapping boxes: an (m, 2) array of indices, the smaller index first.
 
     `boxes` is an array (n, 2, 3) or (n, 6): min x y z, max x y z. 32-bit floats are not converted;
     other numbers are rounded outward: min down, max up. Touching boxes overlap. The order of the
     pairs depends on the algorithm. Only parallel algorithms use `threads` (default: all cores). The
-    call releases the GIL. Algorithms of libraries that end the process when memory ends (Bullet,
-    ODE) run in a process of their own; all others in this one.
+    call releases the GIL. `plugin` is a library with more algorithms (docs/plugins.md). Plug-ins, and
+    libraries that end the process when memory ends (Bullet, ODE), run in a process of their own; all
+    others in this one.
 
     Raises InputError for other shapes, NaN, inverted boxes and unknown names, and when memory ends.
     """
@@ -41,8 +44,9 @@ def overlaps(
         program = find_program()
     except InputError:
         program = ""  # few algorithms need it
+    file = "" if plugin is None else os.path.abspath(plugin)
     pairs: npt.NDArray[np.uint32] = native().overlaps(
-        array, str(algorithm), as_threads(threads), str(isa), texts, program
+        array, str(algorithm), as_threads(threads), str(isa), texts, file, program
     )
     return pairs
 

@@ -155,25 +155,97 @@ def _json_value(value: Any) -> Any:
     return list(value) if isinstance(value, Iterable) else str(value)
 
 
-def run(source: Any, *, algorithm: Any = "all", show: bool = False, **options: Any) -> Results:
+Names = str | Iterable[str]
+Numbers = float | Iterable[float]
+Path = str | os.PathLike[str]
+
+
+def run(
+    source: Any,
+    *,
+    algorithm: Names = "all",
+    show: bool = False,
+    # Sources
+    objects: Numbers | None = None,
+    object_type: Names | None = None,
+    frames: Numbers | None = None,
+    seed: Numbers | None = None,
+    density: Numbers | None = None,
+    engine: Names | None = None,
+    input: Path | None = None,
+    param: dict[str, Any] | None = None,
+    plugin: Path | Iterable[Path] | None = None,
+    # Algorithms
+    threads: Numbers | None = None,
+    isa: Names | None = None,
+    answer: str | None = None,
+    queries: str | None = None,
+    device: str | None = None,
+    filter: str | None = None,
+    shard: str | None = None,
+    # Measuring
+    repetitions: int | str | None = None,
+    precision: float | str | None = None,
+    max_seconds: float | None = None,
+    order_seed: int | None = None,
+    warmup: int | None = None,
+    count: str | None = None,
+    time_limit: float | None = None,
+    allow_timeout: bool = False,
+    check: str | None = None,
+    in_process: bool = False,
+    pin: bool = False,
+    hard_limit: float | None = None,
+    memory_limit: float | None = None,
+    # Output
+    json: Path | None = None,
+    csv: Path | None = None,
+    csv_frames: Path | None = None,
+    print_pairs: bool = False,
+    record: Path | None = None,
+    recorder: Names | None = None,
+    screenshot: Path | None = None,
+    frame: int | None = None,
+    size: str | None = None,
+    gl: str | None = None,
+    # Reading
+    swept: bool = False,
+    widen: float | None = None,
+    periodic: bool | str = False,
+    format: str | None = None,
+    strict: bool = False,
+    elements: str | None = None,
+    keep: float | None = None,
+    radius: float | None = None,
+    frame_rate: float | None = None,
+    animation: str | None = None,
+) -> Results:
     """Runs algorithms and returns their results; the `status` of a case shows whether it failed.
 
-    `source` is a source as on the command line (the name of a scene, a file), or boxes as in
-    `write_recording`. Other arguments are the program's options, as in a run request
-    (docs/run-requests.md):
+    `source` is a source as on the command line (the name of a scene, a file) or several, or boxes as
+    in `write_recording`; absent bodies have EMPTY_BOX. The other arguments are the program's options,
+    as in a run request (docs/run-requests.md); `broadmark --help` describes them:
 
         run("brownian", algorithm="sap*", objects=[1000, 8000], threads=[1, 2], repetitions=5)
 
     With `show`, the terminal shows the program's progress and table. Raises InputError if the
     program rejects the request.
     """
+    options = {key: value for key, value in locals().items() if key not in ("source", "show")}
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
-        if not isinstance(source, (str, os.PathLike)):
-            boxes, source = source, os.path.join(folder, "boxes.aabbs")
-            write_recording(source, boxes)
         lines = os.path.join(folder, "results.jsonl")
-        request = {"source": source, "algorithm": algorithm, **options, "jsonl": lines}
-        with request_file(**request) as path:
+        with request_file(**options, source=as_source(source, folder), jsonl=lines) as path:
             quiet = [] if show else ["--quiet"]
             call("--headless", "--request", path, *quiet, accept=WITH_RESULTS, show=show)
         return read_results(lines)
+
+
+def as_source(source: Any, folder: str) -> Any:
+    """A source for the program: boxes are written as a recording in `folder`."""
+    if isinstance(source, (str, os.PathLike)):
+        return source
+    if isinstance(source, (list, tuple)) and source and isinstance(source[0], (str, os.PathLike)):
+        return source
+    path = os.path.join(folder, "boxes.broadmark")  # holds absent bodies, unlike .aabbs
+    write_recording(path, source)
+    return path

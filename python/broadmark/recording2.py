@@ -225,6 +225,8 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
                 content[offset : offset + length].view(type_).reshape(bodies, *shape)
             )
             offset += _aligned(length)
+    except InputError:
+        raise
     except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{path}: the header is invalid: {error}") from None
     index_at = int(trailer["index_offset"])

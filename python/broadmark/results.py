@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import gzip
+import html
 import json
 import os
 import pathlib
@@ -16,6 +17,7 @@ import numpy as np
 import pandas as pd
 
 from broadmark.errors import InputError
+from broadmark.files import atomic_write
 
 SCHEMAS = ("broadmark-results/2", "broadmark-results/1")
 
@@ -32,15 +34,37 @@ COUNTS = ["pairs", "changed_bodies", "missed", "false", "allowed_extra", "invali
 
 #: The columns that identify a frame's case.
 CASE_KEYS = ["case", *(column["key"] for column in COLUMNS if column["frames"])]
+NUMBERS = [column["key"] for column in COLUMNS if column["kind"] == "number"]
+
+#: The columns of cases in short tables.
+SHORT = [
+    *("scene", "object_type", "objects", "algorithm", "isa", "threads", "params"),
+    *("seconds_per_frame", "pairs_mean", "status"),
+]
 
 
-@dataclass
+class FrameTable(pd.DataFrame):  # type: ignore[misc]
+    """A data frame that groups by the texts that occur: a category without a row is no group."""
+
+    @property
+    def _constructor(self) -> type[FrameTable]:
+        return FrameTable
+
+    def groupby(self, *arguments: Any, observed: bool = True, **options: Any) -> Any:
+        return super().groupby(*arguments, observed=observed, **options)
+
+    def pivot_table(self, *arguments: Any, observed: bool = True, **options: Any) -> Any:
+        return super().pivot_table(*arguments, observed=observed, **options)
+
+
+@dataclass(repr=False)
 class Results:
     """The cases of one or several results files.
 
     `cases` has a row per case, indexed by the case's number. The columns are those of the program's
     `--csv`, and `machine`, `started` (the start of the run, UTC), `file`, `complete` (all requested
-    repetitions ran, or the status ended the case) and `warnings`. Times are in seconds. Unknown values are missing (NaN).
+    repetitions ran, or the status ended the case) and `warnings`. Times are in seconds. Unknown values
+    are NaN.
 
     `details` holds the remaining data of each case, by its number: parameters, conditions, counters,
     differences, and times as arrays.
@@ -57,20 +81,21 @@ class Results:
         return [row.file for row in self.files.itertuples() if not row.complete]
 
     @functools.cached_property
-    def frames(self) -> pd.DataFrame:
-        """A row per case, repetition and frame; the columns are those of the program's `--csv-frames`.
+    def frames(self) -> FrameTable:
+        """A row per case, repetition and frame: the columns of the program's `--csv-frames` after
+        `case`, the row in `cases`.
 
-        Times are in whole nanoseconds; `repetition` and `frame` count from 1.
+        Times are in whole nanoseconds; `repetition` and `frame` count from 1. Texts are categories.
         """
         numbers = [i for i, case in enumerate(self.details) if case["initialize_ns"]]
-        if not numbers:
-            return pd.DataFrame(columns=[*CASE_KEYS, "repetition", "frame"])
         tables = [_frame_table(number, self.details[number]) for number in numbers]
-        frames = pd.concat(tables, ignore_index=True)
-        keys = self.cases[CASE_KEYS[1:]].astype("category")
-        for column in reversed(CASE_KEYS[1:]):
-            frames.insert(1, column, keys[column].take(frames["case"]).values)
-        return frames
+        frames = pd.concat(tables or [_frame_table(0, _NO_FRAMES)], ignore_index=True)
+        for position, column in enumerate(CASE_KEYS[1:], 1):
+            values = self.cases[column]
+            if column not in NUMBERS:
+                values = values.iloc[numbers].astype("category").reindex(values.index)
+            frames.insert(position, column, values.take(frames["case"]).array)
+        return FrameTable(frames)
 
     def select(self, keep: Any) -> Results:
         """The cases of the mask `keep`, for example `results.select(results.cases.status == "ok")`."""
@@ -81,6 +106,91 @@ class Results:
             self.environments,
             self.files,
         )
+
+    def __add__(self, other: Results) -> Results:
+        """The cases of both, numbered from 0."""
+        return _combined([*self._documents(), *other._documents()])
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a results file (.json, .json.gz), which the program reads, too."""
+        path = pathlib.Path(path)
+        if not path.name.endswith((".json", ".json.gz")):
+            raise InputError(f"{path}: the extension of a results file must be .json or .json.gz")
+        documents = self._documents()
+        options = documents[0].options if len(documents) == 1 else ["merge", *self.files["file"]]
+        content = {
+            "schema": SCHEMAS[0],
+            "options": options,
+            "environments": [e for document in documents for e in document.environments],
+            "complete": all(document.complete for document in documents),
+            "cases": [case for document in documents for case in document.cases],
+        }
+        first = 0
+        for document in documents:
+            for case in document.cases:
+                case["environment"] += first
+            first += len(document.environments)
+        text = json.dumps(content, separators=(",", ":"), default=np.ndarray.tolist).encode()
+        with atomic_write(path) as file:
+            file.write(gzip.compress(text, mtime=0) if path.suffix == ".gz" else text)
+
+    def _documents(self) -> list[_Document]:
+        """A document per file."""
+        facts = self.environments.drop(columns="machine").to_dict("records")
+        documents = []
+        for row in self.files.drop_duplicates("file").itertuples():
+            document = _Document(row.file, [], [], row.complete, list(row.command[1:]))
+            for case in self.cases[self.cases["file"] == row.file].itertuples():
+                environment = {
+                    **{key: v for key, v in facts[case.environment].items() if not is_unknown(v)},
+                    "started": case.started,
+                }
+                if environment not in document.environments:
+                    document.environments.append(environment)
+                number = document.environments.index(environment)
+                document.cases.append({**self.details[case.case], "environment": number})
+            documents.append(document)
+        return documents
+
+    def summary(self) -> str:
+        """Cases, algorithms, recordings, machines and files: a line each."""
+        cases = self.cases
+        statuses = cases["status"].value_counts()
+        algorithms = sorted(cases["algorithm"].unique())
+        sizes = sorted(cases["objects"].unique())
+        recordings = cases["recording_hash"].nunique() if len(cases) else 0
+        counts = ", ".join(f"{count:,} {status}" for status, count in statuses.items())
+        lines = [f"{_plural(len(cases), 'case')}" + (f": {counts}" if counts else "")]
+        if len(cases):
+            lines += [
+                f"{_plural(len(algorithms), 'algorithm')}: {_first_few(algorithms)}",
+                f"{_plural(recordings, 'recording')}: {_first_few(sorted(cases['scene'].unique()))}"
+                f"; {_first_few([f'{n:,}' for n in sizes])} bodies",
+                *self.environments["machine"].loc[sorted(cases["environment"].unique())],
+            ]
+        unfinished = set(self.partial)
+        files = [f"{f} (partial)" if f in unfinished else f for f in self.files.get("file", [])]
+        return "\n".join([*lines, *([_first_few(files)] if files else [])])
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+    def _repr_html_(self) -> str:
+        summary = html.escape(self.summary()).replace("\n", "<br>")
+        table: str = self.cases[SHORT].to_html(max_rows=20)
+        return f"<p>{summary}</p>{table}"
+
+
+def _plural(count: int, word: str) -> str:
+    return f"{count:,} {word}" + ("" if count == 1 else "s")
+
+
+def _first_few(names: list[str]) -> str:
+    return ", ".join(names[:8]) + (f" and {len(names) - 8:,} more" if len(names) > 8 else "")
+
+
+def is_unknown(value: Any) -> bool:
+    return value is None or isinstance(value, float) and value != value
 
 
 #: Exceptions raised by values of an unexpected type or shape.
@@ -101,22 +211,27 @@ def read_results(
     to leave one out. An incomplete last line means that the run was ended while
     writing it: the lines before are read, and the file is in `partial`.
     """
+    documents = []
+    for path in paths:
+        try:
+            documents.append(_document(path))
+        except NotResultsError as error:
+            if not skip(path, error):
+                raise
+    return _combined(documents)
+
+
+def results_of(document: dict[str, Any], name: str) -> Results:
+    """The results in the parsed JSON of a results file; `name` stands for the file's."""
+    return _combined([_from_document(name, document)])
+
+
+def _combined(documents: list[_Document]) -> Results:
     environments: list[dict[str, Any]] = []
     details: list[dict[str, Any]] = []
     rows: list[dict[str, Any]] = []
-    files: list[dict[str, Any]] = []
-    for path in paths:
-        try:
-            document = _document(pathlib.Path(path))
-        except NotResultsError as error:
-            if skip(path, error):
-                continue
-            raise
-        try:
-            files.append(_file_row(path, document))
-        except TypeError as error:
-            raise InputError(f"{path}: the options are not a list: {error}") from None
-        environment_indices = [
+    for document in documents:
+        indices = [
             _environment_index(environments, environment) for environment in document.environments
         ]
         for case in document.cases:
@@ -124,44 +239,50 @@ def read_results(
                 _check_lengths(case)
                 row = _row(case)
                 number = case.get("environment", 0)
-                row["environment"] = environment_indices[number]
+                row["environment"] = indices[number]
                 row["started"] = str(document.environments[number].get("started") or "")
             except _SHAPE_ERRORS as error:
                 raise InputError(
-                    f"{path}: case {case.get('id', len(rows))!r}: does not match docs/results.md: "
-                    f"{type(error).__name__} {error}"
+                    f"{document.file}: case {case.get('id', len(rows))!r}: does not match "
+                    f"docs/results.md: {type(error).__name__} {error}"
                 ) from None
-            rows.append({"case": len(rows), **row, "file": os.fspath(path)})
+            rows.append({"case": len(rows), **row, "file": document.file})
             details.append(case)
     machines = _machine_names(environments)
+    columns = ["case", *(column["key"] for column in COLUMNS)]
+    columns += ["complete", "warnings", "environment", "started", "file"]
     try:
-        cases = pd.DataFrame(rows, columns=None if rows else ["case", *CASE_KEYS[1:], "status"])
-        table = pd.DataFrame(environments)
-    except OverflowError as error:
-        raise InputError(f"{', '.join(map(str, paths))}: {error}") from None
-    if rows:
-        cases["machine"] = [machines[number] for number in cases["environment"]]
+        cases = pd.DataFrame(rows, columns=columns)
+        cases[NUMBERS] = cases[NUMBERS].apply(pd.to_numeric)
+        table = pd.DataFrame(environments, dtype=object)  # integers beside NaN
+    except (OverflowError, TypeError, ValueError) as error:
+        names = ", ".join(document.file for document in documents)
+        raise InputError(f"{names}: {error}") from None
+    cases = cases.fillna(np.nan)  # None in columns of texts
+    cases["machine"] = [machines[number] for number in cases["environment"]]
     table["machine"] = machines
+    files = [_file_row(document) for document in documents]
     return Results(cases, details, table, pd.DataFrame(files))
 
 
 @dataclass
 class _Document:
+    file: str
     environments: list[dict[str, Any]]
     cases: list[dict[str, Any]]
     complete: bool
     options: list[str]
 
 
-def _file_row(path: str | os.PathLike[str], document: _Document) -> dict[str, Any]:
+def _file_row(document: _Document) -> dict[str, Any]:
     started = [
         str(environment["started"])
         for environment in document.environments
         if environment.get("started")
     ]
     return {
-        "file": os.fspath(path),
-        "command": ["broadmark", *map(str, document.options)],
+        "file": document.file,
+        "command": ["broadmark", *document.options],
         "started": min(started, default=""),
         "complete": document.complete,
     }
@@ -173,9 +294,9 @@ def _open(path: pathlib.Path) -> TextIO:
     return open(path, encoding="utf-8")
 
 
-def _document(path: pathlib.Path) -> _Document:
+def _document(path: str | os.PathLike[str]) -> _Document:
     try:
-        with _open(path) as file:
+        with _open(pathlib.Path(path)) as file:
             first = file.readline()
             try:
                 head = _parsed(first)
@@ -184,21 +305,41 @@ def _document(path: pathlib.Path) -> _Document:
             if not isinstance(head, dict) or head.get("schema") not in SCHEMAS:
                 raise NotResultsError(f"{path}: not a results file: the schema is not {SCHEMAS[0]}")
             if "cases" not in head:
-                return _from_lines(path, file, head.get("options", []))
+                return _from_lines(path, file, _options(path, head))
+    except InputError:
+        raise
     except (OSError, EOFError, zlib.error, RecursionError, *_SHAPE_ERRORS) as error:
         raise InputError(f"{path}: cannot be read: {error}") from None
-    environments = head.get("environments", [head.get("environment")])
+    return _from_document(path, head)
+
+
+def _from_document(path: str | os.PathLike[str], document: dict[str, Any]) -> _Document:
+    environments = document.get("environments", [document.get("environment")])
     if not all(
         isinstance(values, list) and all(isinstance(value, dict) for value in values)
-        for values in (environments, head["cases"])
+        for values in (environments, document["cases"])
     ):
         raise InputError(f"{path}: an environment or a case is not an object")
-    complete = head.get("complete", True)
-    return _Document(environments, head["cases"], complete, head.get("options", []))
+    return _Document(
+        os.fspath(path),
+        environments,
+        document["cases"],
+        document.get("complete", True),
+        _options(path, document),
+    )
 
 
-def _from_lines(path: pathlib.Path, lines: Iterable[str], options: list[str]) -> _Document:
-    document = _Document([], [], False, options)
+def _options(path: str | os.PathLike[str], head: dict[str, Any]) -> list[str]:
+    options = head.get("options", [])
+    if not isinstance(options, list):
+        raise InputError(f"{path}: the options are not a list: {options!r}")
+    return list(map(str, options))
+
+
+def _from_lines(
+    path: str | os.PathLike[str], lines: Iterable[str], options: list[str]
+) -> _Document:
+    document = _Document(os.fspath(path), [], [], False, options)
     for number, line in enumerate(lines, 2):
         try:
             kind, content = next(iter(_parsed(line).items()))
@@ -326,6 +467,9 @@ def _per_frame(sums: Any, case: dict[str, Any]) -> float | None:
     return sum(total for total, _ in known) / frames if frames else None
 
 
+#: A repetition without a frame, for the columns of an empty table.
+_NO_FRAMES: dict[str, Any] = {"checked": True, "frames": {"total": [[]]}}
+
 #: The conversion from the value at a column's path to the column, by the column's form.
 _FORMS: dict[str, Callable[[Any, dict[str, Any]], Any]] = {
     "value": lambda value, _: value,
@@ -355,5 +499,7 @@ def _frame_table(number: int, case: dict[str, Any]) -> pd.DataFrame:
             default = 0 if case["checked"] and count not in ("pairs", "changed_bodies") else np.nan
             values = counts.get(count, [])[:length]
             columns[count] = values if len(values) == length else default
+        # While the inspector drew, which results files don't hold.
+        columns |= {"checked": bool(case["checked"]), "disturbed": False}
         tables.append(pd.DataFrame(columns, index=range(length)))
     return pd.concat(tables, ignore_index=True)

@@ -48,22 +48,22 @@ def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, 
 @pytest.fixture(scope="session")
 def faulty_plugin() -> str:
     """A plug-in with the deliberately wrong algorithm `faulty`."""
-    return tests_plugin("libfaulty_algorithm.so")
+    return library_of_tests("libfaulty_algorithm.so")
 
 
 @pytest.fixture(scope="session")
 def engine_plugin() -> str:
     """A plug-in with the physics engine `drift`."""
-    return tests_plugin("libmy_engine.so")
+    return library_of_tests("libmy_engine.so")
 
 
 @pytest.fixture(scope="session")
 def fault_injection() -> str:
     """A library that makes system calls fail (tests/support/fault_injection.cpp)."""
-    return tests_plugin("libfault_injection.so")
+    return library_of_tests("libfault_injection.so")
 
 
-def tests_plugin(name: str) -> str:
+def library_of_tests(name: str) -> str:
     plugin = pathlib.Path(find_program()).parent / "tests" / name
     if not plugin.exists():
         pytest.skip("the tests' libraries are built in the checkout, without sanitizers")

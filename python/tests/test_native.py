@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SOURCE_FOLDER
+from conftest import SOURCE_FOLDER, library_of_tests
 
 import broadmark
 from broadmark.arguments import as_boxes
@@ -150,6 +150,24 @@ def test_the_gil_is_released() -> None:
 
 
 MASKED: Any = np.zeros((2, 6)).view(np.ma.MaskedArray)
+
+
+@pytest.mark.parametrize(
+    ("library", "algorithm"),
+    [("libc_sweep.so", "c-sweep"), ("libquick_search.so", "repeated-search")],
+)
+def test_plugins_find_the_pairs(library: str, algorithm: str) -> None:
+    boxes = boxes_in(12, 300)
+    plugin = library_of_tests(library)
+    pairs = broadmark.overlaps(boxes, algorithm, plugin=plugin)
+    assert sorted(map(tuple, pairs.tolist())) == sorted(brute_force(boxes))
+    with pytest.raises(broadmark.InputError, match="has no algorithm 'no-such'"):
+        broadmark.overlaps(boxes, "no-such", plugin=plugin)
+    with pytest.raises(broadmark.InputError, match="unknown parameter 'cells'"):
+        broadmark.overlaps(boxes, algorithm, plugin=plugin, parameters={"cells": 3})
+    with pytest.raises(broadmark.InputError, match="/no/such.so: .*No such file"):
+        broadmark.overlaps(boxes, algorithm, plugin="/no/such.so")
+
 
 INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), expected \(n, 2, 3\) or \(n, 6\)"),

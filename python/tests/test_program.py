@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import inspect
 import pathlib
 import subprocess
 import sys
@@ -10,10 +12,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from synthetic_results import case, write
 
 import broadmark
 from broadmark.commands import COMMANDS
-from broadmark.program import call, find_program
+from broadmark.program import call, find_program, request_file
 
 
 def test_a_scene_is_run_with_any_options() -> None:
@@ -32,6 +35,28 @@ def test_arrays_are_run() -> None:
     results = broadmark.run([touching] * 4, algorithm="bf,sap,grid-sap")
     assert list(results.frames["pairs"]) == [1] * 9  # the first array is the initial pose
     assert set(results.cases["status"]) == {"ok"}
+
+
+def test_arrays_with_absent_bodies_are_run() -> None:
+    boxes = np.array([[[0, 0, 0], [1, 1, 1]], [[1, 1, 1], [2, 2, 2]]], np.float32)
+    gone = np.stack([boxes[0], broadmark.EMPTY_BOX])
+    results = broadmark.run([boxes, gone, boxes], algorithm="bf,tide")
+    assert list(results.frames["pairs"]) == [0, 1] * 2
+    assert set(results.cases["status"]) == {"ok"}
+
+
+def test_the_arguments_of_run_are_the_keys_of_run_requests() -> None:
+    with request_file(no_such_key=1) as path, pytest.raises(broadmark.InputError) as refused:
+        call("--headless", "--request", path)
+    keys = str(refused.value).partition("(one of: ")[2].rstrip(")").split(", ")
+    own = {"show"} | set(inspect.signature(broadmark.run).parameters) - set(keys)
+    assert own == {"show"}
+    assert set(keys) - set(inspect.signature(broadmark.run).parameters) == {"jsonl"}  # read back
+
+
+def test_errors_are_value_errors() -> None:
+    with pytest.raises(ValueError, match="no-such"):
+        broadmark.run("brownian", algorithm="no-such")
 
 
 def test_what_is_no_array_is_an_error() -> None:
@@ -91,4 +116,35 @@ def test_results_are_shown_and_written(
         == 0
     )
     assert len(pd.read_csv(cases)) == len(pd.read_csv(small_results / "results.csv"))
-    assert len(pd.read_csv(frames)) == len(pd.read_csv(small_results / "frames.csv"))
+    pd.testing.assert_frame_equal(pd.read_csv(frames), pd.read_csv(small_results / "frames.csv"))
+    status, out, _ = command("read", small_results / "results.json", "--csv-frames", "-")
+    assert status == 0 and out == frames.read_text()
+
+
+def test_parquet_needs_pyarrow(
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+) -> None:
+    file = tmp_path / "frames.parquet"
+    status, _, error = command("read", small_results / "results.json", "--parquet-frames", file)
+    if importlib.util.find_spec("pyarrow") is None:
+        assert status == 2 and "pyarrow" in error and not file.exists()
+    else:
+        frames = pd.read_parquet(file)
+        assert list(frames) == list(pd.read_csv(small_results / "frames.csv"))
+        assert status == 0 and frames["objects"].mean() == 150
+
+
+@pytest.mark.parametrize("option", ["--csv", "--csv-frames"])
+def test_unwritable_outputs_are_status_2(
+    small_results: pathlib.Path, command: Any, option: str
+) -> None:
+    status, _, error = command("read", small_results / "results.json", option, "/no/such/a.csv")
+    assert (status, error) == (
+        2,
+        "broadmark: /no/such/a.csv: cannot be written: No such file or directory\n",
+    )
+
+
+def test_short_times_keep_their_digits(tmp_path: pathlib.Path, command: Any) -> None:
+    path = write(tmp_path / "r.json", [case("FreeFall", 1000, "kd", 5.25e-6)])
+    assert "5.25e-06" in command("read", path)[1]

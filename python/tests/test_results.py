@@ -13,6 +13,8 @@ from conftest import SOURCE_FOLDER
 from synthetic_results import case, write
 
 import broadmark
+from broadmark.program import call
+from broadmark.results import COLUMNS
 
 
 def test_cases_match_the_programs_csv(small_results: pathlib.Path) -> None:
@@ -40,9 +42,66 @@ def test_frames_match_the_programs_csv(small_results: pathlib.Path) -> None:
     expected = pd.read_csv(small_results / "frames.csv", keep_default_na=False, na_values=[""])
     frames = broadmark.read_results(small_results / "results.json").frames
     assert len(frames) == len(expected) > 100
-    for column in expected.columns.drop(["checked", "disturbed"]):
+    assert list(frames) == ["case", *expected]
+    for column in expected:
         there, ours = expected[column].fillna(""), frames[column].astype(object).fillna("")
         assert list(ours) == list(there), column
+
+
+def test_frames_are_grouped_as_numbers_and_texts(small_results: pathlib.Path) -> None:
+    frames = broadmark.read_results(small_results / "results.json").frames
+    assert len(frames[frames.objects > 100]) == len(frames) / 2
+    assert frames[["objects", "threads", "repetition", "frame"]].mean().notna().all()
+    groups = frames.groupby(["scene", "algorithm", "threads"])["total_ns"].mean()
+    assert len(groups) == 2 * 5 and groups.notna().all()
+    bf = frames[frames.algorithm == "bf"]  # the other algorithms remain categories
+    assert list(bf.groupby("algorithm").size().index) == ["bf"]
+    assert list(bf.pivot_table("total_ns", "frame", "algorithm")) == ["bf"]
+    assert frames.algorithm.dtype == "category" and type(bf.copy()) is type(frames)
+
+
+def test_unknown_values_are_nan(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    foreign = case("FreeFall", 1000, "kd", 1e-3, device=None)
+    foreign["recording"]["seed"] = None
+    path = write(tmp_path / "r.json", [foreign, case("FreeFall", 1000, "sap", 1e-3)])
+    for results in (
+        broadmark.read_results(path),
+        broadmark.read_results(small_results / "results.json"),
+    ):
+        assert not (results.cases.applymap(lambda value: value is None)).any(axis=None)
+        numbers = [c["key"] for c in COLUMNS if c["kind"] == "number"]
+        assert all(results.cases[name].dtype.kind in "if" for name in numbers)
+    assert broadmark.read_results(path).cases.seed.isna().tolist() == [True, False]
+
+
+def test_results_are_shown_shortly(small_results: pathlib.Path) -> None:
+    results = broadmark.read_results(small_results / "results.json")
+    assert str(results) == repr(results)
+    first, algorithms, recordings, *_, file = str(results).splitlines()
+    assert first == "20 cases: 20 ok" and algorithms == "4 algorithms: bf, kd, none, sap-mt"
+    assert recordings == "4 recordings: Brownian, FreeFall; 100, 200 bodies"
+    assert file == str(small_results / "results.json")
+    table = results._repr_html_()
+    assert "<table" in table and table.count("<tr") <= 25
+
+
+def test_results_are_added_and_saved(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    results = broadmark.read_results(small_results / "results.json")
+    kd, sap = (results.select(results.cases.algorithm == name) for name in ("kd", "sap-mt"))
+    other = broadmark.read_results(write(tmp_path / "r.json", [case("FreeFall", 9, "bf", 1e-3)]))
+    both = kd + sap + other
+    assert list(both.cases.case) == list(range(4 + 8 + 1)) and both.cases.machine.nunique() == 2
+    for name in ("saved.json", "saved.json.gz"):
+        both.save(tmp_path / name)
+        again = broadmark.read_results(tmp_path / name)
+        pd.testing.assert_frame_equal(
+            again.cases.drop(columns="file"), both.cases.drop(columns="file")
+        )
+        pd.testing.assert_frame_equal(again.frames, both.frames)
+    (kd + sap).save(tmp_path / "saved.json")
+    assert "/kd" in call("merge", str(tmp_path / "saved.json"), "--csv", "-")
+    with pytest.raises(broadmark.InputError, match="must be .json or .json.gz"):
+        both.save(tmp_path / "saved.csv")
 
 
 def test_several_files_are_combined(small_results: pathlib.Path) -> None:

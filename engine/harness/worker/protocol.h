@@ -6,7 +6,7 @@
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
 //   call        message (and shared memory)                       answer (and shared memory)
-//   case        algorithm, plugin, plugin_hash (of that file),
+//   case        algorithm, plugin, plugin_hash (of that file, "": any),
 //               isa, threads, device, parameters {},
 //               answer ("pairs" | "events"),
 //               memory_limit_bytes (0: none), pin,

@@ -1,34 +1,61 @@
-"""Shows results files as a table, or writes them as CSV.
+"""Shows results files as a table, or writes them as CSV or Parquet.
 
-Reads several files of any version, JSON or JSON Lines.
+Reads several files of any version, JSON or JSON Lines. Tables of frames have the columns of the
+program's --csv-frames.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
+import io
 
 import pandas as pd
 
 from broadmark import selection
-
-COLUMNS = [
-    *("scene", "object_type", "objects", "algorithm", "isa", "threads", "params"),
-    *("seconds_per_frame", "pairs_mean", "status"),
-]
+from broadmark.errors import InputError
+from broadmark.files import write_bytes
+from broadmark.results import SHORT
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
-    parser.add_argument("--csv", metavar="FILE", help="write all columns of the cases as CSV")
-    parser.add_argument("--csv-frames", metavar="FILE", help="write a row per frame as CSV")
+    for kind in ("CSV", "Parquet"):
+        name = kind.lower()
+        parser.add_argument(
+            f"--{name}", metavar="FILE", help=f"write all columns of the cases as {kind}"
+        )
+        parser.add_argument(
+            f"--{name}-frames", metavar="FILE", help=f"write a row per frame as {kind}"
+        )
 
 
 def main(options: argparse.Namespace) -> None:
     results = selection.read_selected(options)
-    if options.csv:
-        results.cases.to_csv(options.csv, index=False)
-    if options.csv_frames:
-        results.frames.to_csv(options.csv_frames, index=False)
-    if not options.csv and not options.csv_frames:
-        with pd.option_context("display.width", 200):
-            print(results.cases[COLUMNS].to_string(index=False))
+    written = False
+    for format_, cases, frames in (
+        (_csv, options.csv, options.csv_frames),
+        (_parquet, options.parquet, options.parquet_frames),
+    ):
+        if cases is not None:
+            write_bytes(cases, format_(results.cases))
+        if frames is not None:
+            write_bytes(frames, format_(results.frames.drop(columns="case")))
+        written |= cases is not None or frames is not None
+    if not written:
+        with pd.option_context("display.width", 200, "display.float_format", "{:.6g}".format):
+            print(results.cases[SHORT].to_string(index=False))
+
+
+def _csv(table: pd.DataFrame) -> bytes:
+    flags = table.select_dtypes(bool)
+    text: str = table.assign(**flags.astype(int)).to_csv(index=False)
+    return text.encode()
+
+
+def _parquet(table: pd.DataFrame) -> bytes:
+    if importlib.util.find_spec("pyarrow") is None:
+        raise InputError("Parquet needs the Python package pyarrow, which is not installed")
+    stream = io.BytesIO()
+    table.to_parquet(stream, engine="pyarrow", index=False)
+    return stream.getvalue()

@@ -13,7 +13,7 @@ from typing import Any
 
 from broadmark.palette import curves_of
 from broadmark.report import labels, rerun
-from broadmark.results import COLUMNS, Results
+from broadmark.results import COLUMNS, Results, is_unknown
 
 #: The columns of cases, copied from `Results.cases`; the others belong to the recording.
 CASE_COLUMNS = [column for column in COLUMNS if not column["path"].startswith("recording/")]
@@ -166,7 +166,8 @@ def _run(row: dict[str, Any]) -> dict[str, Any]:
 
 def _texts(values: Iterable[Any]) -> dict[str, Any]:
     indices: dict[str, int] = {}
-    codes = [indices.setdefault(str(value), len(indices)) for value in values]
+    texts = ("" if is_unknown(value) else str(value) for value in values)
+    codes = [indices.setdefault(text, len(indices)) for text in texts]
     return {"texts": list(indices), "codes": codes}
 
 
