@@ -5,6 +5,7 @@
 - `read_recording`, `write_recording`: the boxes of a recording as numpy arrays
 - `present`: which bodies are present; `EMPTY_BOX` is the box of an absent body
 - `run`: runs algorithms on a scene, a recording or arrays with the program `broadmark`
+- `measure`: times a Python function on a recording, and checks its answers
 - `overlaps`: the overlapping pairs of an array of boxes
 - `BroadPhase`: the overlapping pairs, or their changes, from frame to frame
 - `read_results`: results files as pandas data frames
@@ -22,6 +23,7 @@ if _missing := [name for name in ("numpy", "pandas") if importlib.util.find_spec
 from broadmark.arguments import EMPTY_BOX
 from broadmark.broad_phase import BroadPhase
 from broadmark.errors import InputError
+from broadmark.measure import measure
 from broadmark.native import overlaps
 from broadmark.program import run
 from broadmark.recording2 import ChangingRecording, Groups, present
@@ -39,6 +41,7 @@ __all__ = [
     "PoseRecording",
     "Recording",
     "Results",
+    "measure",
     "overlaps",
     "present",
     "read_recording",

@@ -134,6 +134,13 @@ class Results:
         with atomic_write(path) as file:
             file.write(gzip.compress(text, mtime=0) if path.suffix == ".gz" else text)
 
+    def renamed(self, file: str, options: list[str]) -> Results:
+        """The same cases as if they were from the run with these options in one file."""
+        documents = self._documents()
+        for document in documents:
+            document.file, document.options = file, options
+        return _combined(documents)
+
     def _documents(self) -> list[_Document]:
         """A document per file."""
         facts = self.environments.drop(columns="machine").to_dict("records")
@@ -219,11 +226,6 @@ def read_results(
             if not skip(path, error):
                 raise
     return _combined(documents)
-
-
-def results_of(document: dict[str, Any], name: str) -> Results:
-    """The results in the parsed JSON of a results file; `name` stands for the file's."""
-    return _combined([_from_document(name, document)])
 
 
 def _combined(documents: list[_Document]) -> Results:

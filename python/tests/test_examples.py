@@ -21,7 +21,10 @@ def test_the_readme_has_an_example_of_five_lines() -> None:
     assert 0 < len(examples_in("README.md")[0].strip().splitlines()) <= 5
 
 
-@pytest.mark.parametrize("example", examples_in("README.md") + examples_in("docs/embedding.md"))
+@pytest.mark.parametrize(
+    "example",
+    [e for page in ("README.md", "docs/embedding.md", "docs/results.md") for e in examples_in(page)],
+)
 def test_examples_run(
     example: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
