@@ -175,7 +175,8 @@ def _as_pairs(answer: Any, frame: int) -> npt.NDArray[np.uint32]:
         )
     sorted_pairs: npt.NDArray[np.uint32] = np.sort(pairs.astype(np.uint32), axis=1)
     order = np.lexsort((sorted_pairs[:, 1], sorted_pairs[:, 0]))
-    return np.take(sorted_pairs, order, axis=0)
+    answer_pairs: npt.NDArray[np.uint32] = sorted_pairs[order]
+    return answer_pairs
 
 
 def _are_equal(a: Answers, b: Answers) -> bool:
