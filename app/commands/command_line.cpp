@@ -62,9 +62,9 @@ std::string verboseVersion() {
 #include "library_versions.inc"
       ;
   const Environment environment = thisEnvironment();
-  return fmt::format("{}\ncompiler: {} {}\nbuild type: {}\nlibraries:{}", environment.version,
-                     environment.compiler, environment.compiler_flags, environment.build_type,
-                     kLibraries);
+  return fmt::format("{}\ncommit: {}\ncompiler: {} {}\nbuild type: {}\nlibraries:{}",
+                     environment.version, commitName(environment), environment.compiler,
+                     environment.compiler_flags, environment.build_type, kLibraries);
 }
 
 std::vector<Command> allCommands() {

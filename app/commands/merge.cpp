@@ -3,10 +3,12 @@
 #include "broadmark/results/merge.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
@@ -43,6 +45,13 @@ int run(const Options& options) {
   fmt::print(stderr, "merged: {} of {}; {} were in several of them; {} are partial\n",
              counted(merged.results.cases.size(), "case"), counted(runs.size(), "file"),
              merged.repeated, partial);
+  std::set<std::string> builds;
+  for (const Environment& environment : merged.results.environments) {
+    builds.insert(buildName(environment));
+  }
+  if (builds.size() > 1) {
+    fmt::print(stderr, "of different builds: {}\n", fmt::join(builds, "; "));
+  }
   return 0;
 }
 

@@ -99,6 +99,7 @@ std::vector<ConditionDifference> differencesOf(const Candidate& before, const Ca
       instructions && before.result->conditions.counted_by == CounterSource::valgrind;
   compare("processor", a.cpu, b.cpu, !is_simulated);
   compare("build type", a.build_type, b.build_type, true);
+  compare("commit", commitName(a), commitName(b), false);
   compare("compiler", a.compiler, b.compiler, false);
   compare("compiler's options", a.compiler_flags, b.compiler_flags, false);
   compare("governor", a.governor, b.governor, false);

@@ -13,6 +13,7 @@
 #include "broadmark/cores.h"
 #include "broadmark/execution.h"
 #include "broadmark/harness/memory_limit.h"
+#include "commit.h"
 
 namespace broadmark {
 namespace {
@@ -97,9 +98,23 @@ Environment thisEnvironment() {
       .compiler_flags = BROADMARK_FLAGS,
       .build_type = BROADMARK_BUILD_TYPE,
       .version = BROADMARK_VERSION,
+      .commit = kCommit,
+      .commit_date = kCommitDate,
+      .dirty = kDirty,
       .started = utcNow()};
   ::getloadavg(&environment.load_average, 1);
   return environment;
+}
+
+std::string commitName(const Environment& environment) {
+  if (environment.commit.empty()) return "unknown";
+  constexpr std::size_t kDigits = 10;
+  return environment.commit.substr(0, kDigits) + (environment.dirty ? " with changes" : "");
+}
+
+std::string buildName(const Environment& environment) {
+  return fmt::format("version {}, commit {}, {}{}", environment.version, commitName(environment),
+                     environment.compiler, environment.compiler_flags);
 }
 
 }  // namespace broadmark

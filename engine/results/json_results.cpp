@@ -26,6 +26,9 @@ void visitFields(EnvironmentType& e, Visit&& visit) {
   visit("compiler_flags", e.compiler_flags);
   visit("build_type", e.build_type);
   visit("version", e.version);
+  visit("commit", e.commit);
+  visit("commit_date", e.commit_date);
+  visit("dirty", e.dirty);
   visit("started", e.started);
   visit("compute_devices", e.compute_devices);
 }
@@ -40,8 +43,9 @@ Environment environmentFrom(const JsonFields& json) {
   Environment environment;
   visitFields(environment, [&](const char* key, auto& value) {
     const std::string_view name = key;
-    const bool is_newer =
-        name == "host" || name == "compute_devices";  // missing in the first files
+    // Missing in earlier files.
+    const bool is_newer = name == "host" || name == "compute_devices" || name == "commit" ||
+                          name == "commit_date" || name == "dirty";
     if (!is_newer || json.has(key)) json.read(key, value);
   });
   return environment;

@@ -8,6 +8,7 @@ import html
 import json
 import os
 import pathlib
+import re
 import zlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -386,15 +387,32 @@ def _environment_index(environments: list[dict[str, Any]], environment: dict[str
 
 
 def _machine_names(environments: list[dict[str, Any]]) -> list[str]:
-    """A short unique name for each environment."""
-    names: list[str] = []
+    """A short unique name for each environment: machine, and build if a machine has several."""
+    machines = []
     for environment in environments:
         host = f"{environment['host']}: " if environment.get("host") else ""
         cores = environment.get("logical_cores", "?")
-        name = f"{host}{environment.get('cpu') or 'unknown'}, {cores} cores"
+        machines.append(f"{host}{environment.get('cpu') or 'unknown'}, {cores} cores")
+    names: list[str] = []
+    for machine, environment in zip(machines, environments):
+        commit = commit_name(environment)
+        name = f"{machine}, commit {commit}" if commit and machines.count(machine) > 1 else machine
         duplicates = sum(other.split(" #")[0] == name for other in names)
         names.append(f"{name} #{duplicates + 1}" if duplicates else name)
     return names
+
+
+def without_build(machine: str) -> str:
+    """The name of an environment without what tells it from others of the same machine."""
+    return re.sub(r"(, commit [^,#]+)?( #\d+)?$", "", machine)
+
+
+def commit_name(environment: dict[str, Any]) -> str:
+    """The commit of a build, as by `broadmark --version --verbose`; "" if unknown."""
+    commit = environment.get("commit")
+    if not isinstance(commit, str) or not commit:
+        return ""
+    return commit[:10] + (" with changes" if environment.get("dirty") is True else "")
 
 
 def _check_lengths(case: dict[str, Any]) -> None:

@@ -23,7 +23,11 @@ def test_the_readme_has_an_example_of_five_lines() -> None:
 
 @pytest.mark.parametrize(
     "example",
-    [e for page in ("README.md", "docs/embedding.md", "docs/results.md") for e in examples_in(page)],
+    [
+        e
+        for page in ("README.md", "docs/embedding.md", "docs/results.md")
+        for e in examples_in(page)
+    ],
 )
 def test_examples_run(
     example: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch

@@ -248,6 +248,14 @@ def test_without_commits_files_are_in_the_order_of_their_runs(
     assert status == 0 and "2026-01-07" in out and out.splitlines()[-1].startswith("12 runs")
 
 
+def test_builds_with_changes_are_in_the_order_of_their_runs(
+    tmp_path: pathlib.Path, command: Any
+) -> None:
+    write_history(tmp_path / "runs", 12, slower_kd, commit="a" * 40, dirty=True)
+    status, out, _ = command("history", tmp_path / "runs")
+    assert status == 0 and out.splitlines()[-1].startswith("12 runs")
+
+
 def test_dates_of_commits_come_before_those_of_runs(tmp_path: pathlib.Path, command: Any) -> None:
     """The oldest commit ran last."""
     write_history(
@@ -477,7 +485,7 @@ def test_the_program(tmp_path: pathlib.Path, command: Any) -> None:
     for number in range(8):
         document = copy.deepcopy(runs[0])
         facts = document["environments"][0]
-        facts["commit"] = f"{number + 1:x}" * 40
+        facts |= {"commit": f"{number + 1:x}" * 40, "commit_date": "", "dirty": False}
         facts["started"] = f"2026-01-02T03:04:0{number}Z"
         for phases in [
             entry["frames"] for entry in document["cases"] if entry["algorithm"] == "kd"

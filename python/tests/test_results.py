@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import pathlib
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,7 +15,7 @@ from synthetic_results import case, write
 
 import broadmark
 from broadmark.program import call
-from broadmark.results import COLUMNS
+from broadmark.results import COLUMNS, without_build
 
 
 def test_cases_match_the_programs_csv(small_results: pathlib.Path) -> None:
@@ -72,6 +73,27 @@ def test_unknown_values_are_nan(small_results: pathlib.Path, tmp_path: pathlib.P
         numbers = [c["key"] for c in COLUMNS if c["kind"] == "number"]
         assert all(results.cases[name].dtype.kind in "if" for name in numbers)
     assert broadmark.read_results(path).cases.seed.isna().tolist() == [True, False]
+
+
+def test_builds_of_a_machine_are_told_apart(tmp_path: pathlib.Path, command: Any) -> None:
+    files = []
+    for number, dirty in enumerate([False, True]):
+        builds = [case("Gravity", 1000, "kd", 1e-3), case("Gravity", 4000, "kd", 5e-3)]
+        files.append(write(tmp_path / f"{number}.json", builds))
+        document = json.loads(files[-1].read_text())
+        document["environments"][0] |= {"commit": "0123456789ab" + "c" * 28, "dirty": dirty}
+        document["environments"][0] |= {"compiler": "gcc 12", "compiler_flags": " -O3"}
+        files[-1].write_text(json.dumps(document))
+    assert broadmark.read_results(files[0]).cases.machine[0] == "A processor, 8 cores"
+    machines = list(broadmark.read_results(*files).cases.machine.unique())
+    assert machines == [
+        "A processor, 8 cores, commit 0123456789",
+        "A processor, 8 cores, commit 0123456789 with changes",
+    ]
+    assert list(map(without_build, machines)) == ["A processor, 8 cores"] * 2
+    for name in ("table2", "claims"):
+        status, out, _ = command(name, files[1])
+        assert status == 0 and "Commit 0123456789 with changes, gcc 12, -O3" in out
 
 
 def test_results_are_shown_shortly(small_results: pathlib.Path) -> None:

@@ -270,6 +270,14 @@ TEST(Compare, OtherConditionsAreTold) {
   EXPECT_THAT(formatComparison(comparison), HasSubstr("check: full -> off"));
 }
 
+TEST(Compare, OtherCommitsAreTold) {
+  const NamedResults before = resultsOf({resultOf("a", 1'000'000)});
+  NamedResults after = before;
+  after.results.environments[0].commit = std::string(40, 'a');
+  EXPECT_THAT(formatComparison(comparisonOf(before, after)),
+              HasSubstr("commit: unknown -> aaaaaaaaaa"));
+}
+
 TEST(Compare, WhatIsPartialIsTold) {
   const NamedResults before = resultsOf({resultOf("a", 1'000'000)});
   NamedResults after = before;

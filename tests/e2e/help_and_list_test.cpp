@@ -60,6 +60,8 @@ TEST_F(Help, OfAllHasThatOfEveryCommand) {
 
 TEST_F(Help, Version) {
   EXPECT_THAT(run({"--version", "--verbose"}).out, HasSubstr("\n  libbullet-dev "));
+  EXPECT_THAT(linesOf(run({"--version", "--verbose"}).out),
+              AllOf(Contains(StartsWith("commit: ")), Contains(StartsWith("compiler: "))));
   expectRefusal({"--verbose"}, {"--verbose", "--version"});
   const ProgramResult ended = run({"--version"});
   expectWords(ended, {"."});

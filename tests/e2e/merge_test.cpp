@@ -30,6 +30,22 @@ TEST_F(Merge, TwoShardsGiveTheWholeRun) {
   EXPECT_EQ(same.status, 0) << same.err << same.out;
 }
 
+TEST_F(Merge, DifferentBuildsAreTold) {
+  runShard("0/2", "--json", "a.json");
+  runShard("1/2", "--json", "b.json");
+  EXPECT_THAT(run({"merge", "a.json", "b.json", "--json", "same.json"}).err,
+              Not(HasSubstr("builds")));
+  Json other = readJson(file("b.json"));
+  other["environments"][0]["commit"] = std::string(40, 'a');
+  other["environments"][0]["dirty"] = true;
+  writeFile(file("b.json"), other.dump());
+  const ProgramResult ended = run({"merge", "a.json", "b.json", "--json", "both.json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("of different builds: "));
+  EXPECT_THAT(ended.err, HasSubstr("commit aaaaaaaaaa with changes, "));
+  EXPECT_EQ(readJson(file("both.json")).at("environments").size(), 2U);
+}
+
 TEST_F(Merge, LinesAreWrittenAsTheRunGoes) {
   runShard("0/1", "--jsonl", "a.jsonl");
   const std::vector<std::string> lines = linesOf(readFile(file("a.jsonl")));

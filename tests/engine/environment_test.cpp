@@ -32,8 +32,19 @@ TEST(Environment, IsPlausible) {
   EXPECT_THAT(environment.compiler, AnyOf(StartsWith("gcc "), StartsWith("clang ")));
   EXPECT_NE(environment.build_type, "");
   EXPECT_THAT(environment.version, MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+  EXPECT_THAT(environment.commit, MatchesRegex("([0-9a-f]{40})?"));  // "": no repository
+  EXPECT_EQ(environment.commit_date.empty(), environment.commit.empty());
   EXPECT_THAT(environment.started,
               MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
+}
+
+TEST(Environment, BuildsAreNamed) {
+  Environment environment{.compiler = "gcc 12", .compiler_flags = " -O3", .version = "1.2.3"};
+  EXPECT_EQ(commitName(environment), "unknown");
+  environment.commit = std::string(10, 'a') + std::string(30, 'b');
+  EXPECT_EQ(commitName(environment), "aaaaaaaaaa");
+  environment.dirty = true;
+  EXPECT_EQ(buildName(environment), "version 1.2.3, commit aaaaaaaaaa with changes, gcc 12 -O3");
 }
 
 }  // namespace

@@ -58,6 +58,9 @@ Results everything() {
                            .compiler_flags = "-O3",
                            .build_type = "Release",
                            .version = "1.2.3",
+                           .commit = "0123456789abcdef0123456789abcdef01234567",
+                           .commit_date = "2025-01-01T00:00:00Z",
+                           .dirty = true,
                            .started = "2025-01-02T03:04:05Z"}};
   results.complete = true;
   results.options = {"broadmark", "--headless", "FreeFall"};
@@ -183,9 +186,10 @@ TEST(ResultsJson, HasTheKeysThatOthersRelyOn) {
     for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key;
   };
   expect_keys(json, {"environments", "options", "cases", "complete"});
-  expect_keys(json["environments"][0], {"cpu", "caches", "logical_cores", "physical_cores", "isa",
-                                        "memory_bytes", "governor", "load_average", "os",
-                                        "compiler", "compiler_flags", "build_type", "version"});
+  expect_keys(json["environments"][0],
+              {"cpu", "caches", "logical_cores", "physical_cores", "isa", "memory_bytes",
+               "governor", "load_average", "os", "compiler", "compiler_flags", "build_type",
+               "version", "commit", "dirty"});
   ASSERT_THAT(json["cases"], SizeIs(2));
   const Json& full = json["cases"][0];
   expect_keys(full, {"id", "recording", "algorithm", "family", "isa", "threads", "params", "status",

@@ -21,7 +21,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from broadmark.errors import InputError
-from broadmark.results import Results
+from broadmark.results import Results, without_build
 
 #: How a commit looks in a path.
 _HASH = re.compile(r"(?<![0-9a-z])[0-9a-f]{7,40}(?![0-9a-z])")
@@ -55,8 +55,8 @@ def ordered_commits(results: Results, repository: str | None) -> Order:
     names = [_text(environment.get("commit")) for environment in facts]
     if repository is not None:
         return _in_repository(repository, names, cases["file"])
-    if not any(names):
-        return _by_file(cases)
+    if not any(names) or any(environment.get("dirty") is True for environment in facts):
+        return _by_file(cases)  # builds with changes of one commit may differ
     nameless = [file for file, name in zip(cases["file"], names) if not name]
     if nameless:
         raise InputError(
@@ -121,7 +121,7 @@ def _by_start(names: list[str], cases: pd.DataFrame) -> Order:
     )
     first = table.groupby("name")["start"].min()
     order = {name: i for i, name in enumerate(first.sort_values().index)}
-    for machine, runs in table.groupby(table["machine"].str.replace(r" #\d+$", "", regex=True)):
+    for machine, runs in table.groupby(table["machine"].map(without_build)):
         sequence = list(runs.groupby("name")["start"].min().sort_values().index)
         for earlier, later in zip(sequence, sequence[1:]):
             if order[earlier] > order[later]:

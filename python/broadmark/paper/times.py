@@ -13,7 +13,7 @@ import pandas as pd
 
 from broadmark.errors import InputError
 from broadmark.paper.algorithms import ALGORITHMS, CAP_SECONDS, SCENES
-from broadmark.results import Results
+from broadmark.results import Results, commit_name
 from broadmark.selection import best_variants, by_machine
 
 SCENE_NAMES = [scene.name for scene in SCENES]
@@ -44,8 +44,19 @@ class Times:
     def __init__(self, machine: str, results: Results, object_type: str = "Cubes") -> None:
         self.machine = machine
         #: The machine's OpenCL devices, the used device first.
-        devices = results.environments.set_index("machine").loc[machine].get("compute_devices")
+        environment = results.environments.set_index("machine").loc[machine].to_dict()
+        devices = environment.get("compute_devices")
         self.devices: list[str] = devices if isinstance(devices, list) else []
+        #: Commit, compiler and options of the program; "" if the commit is unknown.
+        self.build = ", ".join(
+            str(text).strip()
+            for text in (
+                commit_name(environment),
+                environment.get("compiler"),
+                environment.get("compiler_flags"),
+            )
+            if commit_name(environment) and isinstance(text, str)
+        )
         cases = results.cases
         mask = (
             cases["scene"].isin(SCENE_NAMES)
@@ -109,6 +120,7 @@ class Times:
             if max(threads, default=1) > 1
             else []
         )
+        lines += [f"Commit {self.build}"] if self.build else []
         return lines + ([f"OpenCL device: {self.device}"] if self.device else [])
 
     @property

@@ -13,7 +13,7 @@ from typing import Any
 
 from broadmark.palette import curves_of
 from broadmark.report import labels, rerun
-from broadmark.results import COLUMNS, Results, is_unknown
+from broadmark.results import COLUMNS, Results, commit_name, is_unknown
 
 #: The columns of cases, copied from `Results.cases`; the others belong to the recording.
 CASE_COLUMNS = [column for column in COLUMNS if not column["path"].startswith("recording/")]
@@ -37,6 +37,7 @@ FACTS = [
     ("Compiler flags", "compiler_flags"),
     ("Build type", "build_type"),
     ("Program version", "version"),
+    ("Commit", "commit"),
     ("Load at the start", "load_average"),
 ]
 
@@ -145,7 +146,7 @@ def _wrong_frames(details: list[dict[str, Any]]) -> dict[int, list[int]]:
 def _machine(environment: dict[str, Any]) -> dict[str, Any]:
     facts = []
     for title, key in FACTS:
-        value = environment.get(key)
+        value = commit_name(environment) if key == "commit" else environment.get(key)
         if key == "memory_bytes" and isinstance(value, (int, float)) and value > 0:
             value = f"{value / 2**30:.1f} GiB"
         if isinstance(value, list):

@@ -21,8 +21,11 @@ struct Environment {
   std::string compiler;
   std::string compiler_flags;
   std::string build_type;
-  std::string version;  ///< Broadmark's
-  std::string started;  ///< UTC, ISO 8601
+  std::string version;      ///< Broadmark's
+  std::string commit;       ///< 40 digits; "" if unknown
+  std::string commit_date;  ///< ISO 8601; "" if unknown
+  bool dirty = false;       ///< the commit's sources had other changes
+  std::string started;      ///< UTC, ISO 8601
   /// OpenCL devices, a line each; the first is the default. Filled in by the caller: engine does
   /// not depend on OpenCL.
   std::vector<std::string> compute_devices;
@@ -31,5 +34,11 @@ struct Environment {
 };
 
 Environment thisEnvironment();
+
+/// "1a2b3c4d5e with changes": the commit, abbreviated; "unknown".
+std::string commitName(const Environment&);
+
+/// The version, the commit, the compiler and its options.
+std::string buildName(const Environment&);
 
 }  // namespace broadmark
