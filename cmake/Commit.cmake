@@ -1,6 +1,7 @@
 # Writes OUTPUT, a C++ source with the commit of the folder SOURCE, unless it is as it should be. A build
 # runs this each time, so that a commit recompiles nothing else. GIVEN: the commit, where SOURCE is no
 # repository. The same commit gives the same file.
+cmake_minimum_required(VERSION 3.25)
 function(git result)
   execute_process(COMMAND git --no-optional-locks -C ${SOURCE} ${ARGN}
     OUTPUT_VARIABLE text OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
