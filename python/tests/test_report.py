@@ -107,6 +107,28 @@ def test_commands_run_the_case_again(small_results: pathlib.Path, tmp_path: path
             assert again[column] == results.cases[column][number], column
 
 
+def test_paths_are_relative_to_the_page(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A results file names its recording and plug-in relative to its own folder."""
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    for name in ("boxes.aabbs", "mine.so", "pairs.csv"):
+        (folder / name).touch()
+    cases = [
+        case("mine", 100, 1e-5, plugin="mine.so"),
+        case("logged", 100, 1e-5, plugin="pairs:pairs.csv"),
+    ]
+    for result in cases:
+        result["recording"]["source"] = "boxes.aabbs"
+    write_results(folder / "r.jsonl", cases)
+    monkeypatch.chdir(tmp_path)
+    columns = page_data(broadmark.read_results("runs/r.jsonl"))["columns"]
+    for part in ("variant_command", "again_command"):
+        mine, logged = texts(columns[part])
+        assert "--plugin runs/mine.so" in mine and "--plugin pairs:runs/pairs.csv" in logged
+
+
 def test_variants_are_labelled_by_differing_traits(tmp_path: pathlib.Path) -> None:
     data = data_of(
         tmp_path,

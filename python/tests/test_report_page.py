@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import base64
+import copy
 import json
 import pathlib
 import re
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 from browser import Page, start_browser  # skips these tests without selenium
 from report_results import case, standard_cases, write_results
 
+import broadmark
 from broadmark.palette import CURVES, DARK, LIGHT
 
 from selenium.webdriver.common.keys import Keys
@@ -106,6 +109,97 @@ def test_filters_change_table_charts_and_ratios(opened: Page, standard: pathlib.
     opened.filter("status")
     for section in ("ratios", "scaling", "memory", "frames", "failures"):
         assert "No case" in opened.section(section).text
+
+
+def repeated(algorithm: str, objects: int, *seconds: float, **changes: Any) -> dict[str, Any]:
+    """A case whose repetitions took these times per frame."""
+    result = case(algorithm, objects, sum(seconds) / len(seconds), **changes)
+    totals = [[round(value * 1e9)] * 4 for value in seconds]
+    result["frames"] = {phase: copy.deepcopy(totals) for phase in result["frames"]}
+    result["initialize_ns"] = [1] * len(seconds)
+    return result
+
+
+def test_ties_within_the_noise_share_the_crown(opened: Page) -> None:
+    cases = [
+        repeated("sap", 100, 0.99e-5, 1.00e-5, 1.01e-5),
+        repeated("kd", 100, 1.00e-5, 1.01e-5, 1.02e-5),
+        repeated("bf", 100, 1.29e-5, 1.30e-5, 1.31e-5),
+    ]
+    opened.show(write_results(opened.folder / "r.jsonl", cases))
+    rows = opened.ratios()
+    assert rows["kd"][2].startswith("1.01 ±0.02") and rows["bf"][2].startswith("1.30 ±0.0")
+    crowned = "[...document.querySelectorAll('#ratios tbody .h0')].map((n) => n.closest('tr').cells[0].textContent)"
+    assert sorted(opened.js(f"return {crowned}")) == ["kd", "kd", "sap", "sap"]  # mean and cell
+    single = [repeated("sap", 100, 1.00e-5), repeated("kd", 100, 1.01e-5)]
+    opened.show(write_results(opened.folder / "r.jsonl", single))
+    assert opened.ratios()["kd"][2] == "1.01"  # no noise is known
+    assert set(opened.js(f"return {crowned}")) == {"sap"}
+
+
+def test_what_another_file_did_not_ask_for_is_no_gap(opened: Page) -> None:
+    few = write_results(opened.folder / "few.jsonl", [case("kd", 100, 1e-5), case("bf", 100, 2e-5)])
+    many = [case("kd", 200, 2e-5), case("bf", 400, 9e-5), case("kd", 400, 3e-5)]
+    more = write_results(opened.folder / "more.jsonl", [*many, case("sap", 200, 4e-5)])
+    opened.show(few, more)
+    rows = opened.ratios()
+    assert rows["sap"] == ["2.83", "1", "not asked", "2.00", "not run"]  # √(2 · 2 · 2)
+    assert rows["bf"][1:] == ["1", "2.00", "not run", "3.00"]
+    opened.section("failures")
+    assert "sap: on" not in " ".join(opened.texts("#failures li"))
+    assert "sap: Brownian Cubes, 400 bodies" in opened.texts("#failures li")
+
+
+def test_self_checks_are_no_algorithms_and_come_last(opened: Page) -> None:
+    none = case("none", 100, 1e-7, family="self-check")
+    opened.show(write_results(opened.folder / "r.jsonl", [none, case("kd", 100, 1e-5)]))
+    assert "1 algorithm" in opened.texts("#summary .tile")
+    opened.section("cases")
+    assert opened.texts("#cases tbody td:first-child") == ["kd", "none"]
+    opened.section("scaling")
+    opened.wait("return document.querySelector('#scaling .row-name')")
+    assert opened.texts("#scaling .row-name") == ["kd", "none"]
+
+
+def test_a_single_size_is_a_list(opened: Page, standard: pathlib.Path) -> None:
+    cases = [result for result in standard_cases() if result["recording"]["objects"] == 100]
+    opened.show(write_results(standard, cases))
+    opened.section("scaling")
+    opened.wait("return document.querySelector('#scaling .row-name')")
+    assert opened.texts("#scaling .row-name")[:3] == ["bf", "sap", "kd"]
+    assert opened.texts("#scaling text.gap") == ["≠ mismatch", "! error", "∅ unsupported"]
+    assert opened.texts("#scaling .legend") == []
+    first = opened.find('#scaling .series[data-variant="sap"] .row-name')
+    opened.js("arguments[0].scrollIntoView({block: 'center'})", first)
+    opened.hover(first)
+    assert "20.0" in opened.find("#tooltip").text
+    opened.js("document.querySelector('#scaling .symbol').focus()")
+    opened.type(Keys.ARROW_DOWN, Keys.ENTER)
+    assert opened.find("#details-title").text == "sap"
+
+
+def test_two_files_are_compared(opened: Page) -> None:
+    files = []
+    for name, factor in (("before", 1.0), ("after", 1.5)):
+        results = broadmark.run(
+            "brownian", algorithm="bf,sap,kd,grid-sap,tide", objects=60, frames=20, repetitions=3
+        )
+        for testcase in results.details:
+            scale = factor if testcase["algorithm"] == "bf" else 1
+            for repetition in range(3):
+                jitter = 1 + 0.001 * repetition
+                frames = np.full(20, round(scale * jitter * 1e6))
+                for phase in testcase["frames"]:
+                    testcase["frames"][phase][repetition] = frames
+        files.append(opened.folder / f"{name}.json")
+        results.save(files[-1])
+    opened.show(*files)
+    opened.section("compared")
+    rows = opened.texts("#compared tbody tr:first-child td")
+    assert rows[0] == "bf" and float(rows[4]) == pytest.approx(1.5, rel=0.01)
+    assert rows[6] == "REGRESSED"
+    assert set(opened.texts("#compared tbody td:last-child")[1:]) == {"same"}
+    assert "1 regressed" in " ".join(opened.texts("#compared p")).lower()
 
 
 def test_a_filter_of_statuses_hides_no_gap(opened: Page, standard: pathlib.Path) -> None:
@@ -268,6 +362,35 @@ def test_a_phone_needs_no_horizontal_scrolling(opened: Page, standard: pathlib.P
     opened.find(".all-filters > summary").click()
     opened.filter("algorithm", "kd")
     assert opened.texts("#found") == ["3 of 12 cases"]
+
+
+def test_on_a_phone_tables_hint_that_they_scroll_and_fingers_find_controls(opened: Page) -> None:
+    wide = [case(a, n, s) for a, s in (("kd", 1e-5), ("bf", 3e-5)) for n in range(100, 2000, 100)]
+    opened.show(write_results(opened.folder / "wide.jsonl", wide), width=390)
+    for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
+        opened.section(section)
+    opened.find(".all-filters > summary").click()
+    opened.wait("return document.querySelector('#ratios .scroll-frame.more .scroll-hint')")
+    assert opened.find("#ratios .scroll-hint").is_displayed()
+    opened.js("document.querySelector('#ratios .scroll').scrollLeft = 1e6")
+    opened.wait("return !document.querySelector('#ratios .scroll-frame.more')")
+    small = opened.js(
+        "return [...document.querySelectorAll('button, select, input:not([type=checkbox]), summary,"
+        " .filter label, [role=gridcell]')].map((n) => [n, n.getBoundingClientRect()])"
+        ".filter(([n, box]) => box.width && (box.height < 44 || box.width < 44))"
+        ".map(([n, box]) => `${n.outerHTML.slice(0, 60)} ${box.width}x${box.height}`)"
+    )
+    assert small == []
+
+
+def test_every_case_is_printed_without_hatching(opened: Page) -> None:
+    many = [case(f"a{i}", 100 * n, None if i % 2 else 1e-5) for i in range(70) for n in range(1, 5)]
+    opened.show(write_results(opened.folder / "many.jsonl", many))
+    pdf = opened.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"]
+    assert len(base64.b64decode(pdf)) < 2_000_000
+    opened.js("dispatchEvent(new Event('beforeprint'))")
+    assert len(opened.texts("#cases tbody tr")) == 280
+    assert len(opened.texts("#ratios tbody tr")) == 70
 
 
 def test_dark_theme_by_system_and_by_button(opened: Page, standard: pathlib.Path) -> None:

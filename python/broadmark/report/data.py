@@ -11,6 +11,8 @@ import shlex
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from broadmark.palette import curves_of
 from broadmark.report import labels, rerun
 from broadmark.results import COLUMNS, Results, commit_name, is_unknown
@@ -60,13 +62,17 @@ def page_data(results: Results) -> dict[str, Any]:
     columns["isa"] = _texts(case["isa"] if case.get("vectorised") else "" for case in details)
     columns["checked"] = [int(bool(case["checked"])) for case in details]
     columns["complete"] = [int(complete) for complete in cases.get("complete", [])]
+    columns["standard_error"] = _numbers(map(_standard_error, details))
+    columns["load"] = _numbers(case.get("conditions", {}).get("load_average") for case in details)
     columns["frames_run"] = [max(map(len, case["frames"]["total"]), default=0) for case in details]
     columns["counted"] = _texts(map(_counted, details))
-    for part, words in (("variant", rerun.variant_words), ("condition", rerun.condition_words)):
-        columns[f"{part}_command"] = _texts(shlex.join(words(case)) for case in details)
-    columns["again_command"] = _texts(
-        shlex.join(rerun.again_words(case, file)) for case, file in zip(details, files)
+    columns["condition_command"] = _texts(
+        shlex.join(rerun.condition_words(case)) for case in details
     )
+    for part, words in (("variant", rerun.variant_words), ("again", rerun.again_words)):
+        columns[f"{part}_command"] = _texts(
+            shlex.join(words(case, file)) for case, file in zip(details, files)
+        )
     return {
         "machines": [_machine(row) for row in results.environments.to_dict("records")],
         "runs": [_run(row) for row in results.files.to_dict("records")],
@@ -119,6 +125,14 @@ def _recordings(
         recording_indices.append(known[key])
     labels.add_settings(recordings, sources)
     return recordings, recording_indices
+
+
+def _standard_error(case: dict[str, Any]) -> float | None:
+    """Of the mean over the repetitions, relative to it; None for a single one."""
+    means = [float(np.mean(times)) for times in case["frames"]["total"] if len(times)]
+    if len(means) < 2 or not all(means):
+        return None
+    return float(np.std(means, ddof=1) / math.sqrt(len(means)) / np.mean(means))
 
 
 def _counted(case: dict[str, Any]) -> str:

@@ -18,6 +18,7 @@ from typing import Any
 from broadmark.errors import InputError
 from broadmark.files import atomic_write
 from broadmark.palette import DARK, LIGHT, css
+from broadmark.report.compared import comparison
 from broadmark.report.data import page_data
 from broadmark.report.pictures import draw_pictures
 from broadmark.report.timelines import points_per_case, timeline
@@ -32,7 +33,19 @@ D3_LICENCE = pathlib.Path("/usr/share/doc/node-d3/copyright")
 #: The page's scripts in dependency order.
 SCRIPTS = [
     *("format", "elements", "cases", "ranking", "filters", "tooltip", "panels", "timeline"),
-    *("details", "table", "summary", "ratios", "scaling", "memory", "frames", "failures", "main"),
+    *(
+        "details",
+        "table",
+        "summary",
+        "ratios",
+        "rows",
+        "scaling",
+        "memory",
+        "frames",
+        "failures",
+        "compared",
+    ),
+    "main",
 ]
 
 
@@ -53,11 +66,12 @@ def write_report(
         raise InputError(
             f"the results do not match docs/results.md: {type(error).__name__} {error}"
         ) from None
-    notes: list[str] = []
+    data["comparison"], notes = comparison(results)
     drawn: list[dict[str, Any]] = []
     words = [recording.pop("words") for recording in data["recordings"]]
     if pictures:
-        drawn, notes = draw_pictures(data["recordings"], words)
+        drawn, missing = draw_pictures(data["recordings"], words)
+        notes = [*notes, *missing]
     data |= {
         "title": title or "Broadmark results",
         "written": datetime.datetime.now(datetime.timezone.utc).isoformat(" ", "minutes")[:16],

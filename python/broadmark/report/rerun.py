@@ -33,12 +33,20 @@ def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
     return [name, *as_options(**options), *as_options(param=parameters)]
 
 
-def variant_words(case: dict[str, Any]) -> list[str]:
+def _plugin(case: dict[str, Any], results_file: str) -> str | None:
+    """The file of a case's plug-in, as stated_path(); it may be a log of pairs."""
+    plugin = str(case.get("plugin") or "")
+    prefix = "pairs:" if plugin.startswith("pairs:") else ""
+    stated = plugin.removeprefix(prefix)
+    return prefix + stated_path(results_file, stated) if stated else None
+
+
+def variant_words(case: dict[str, Any], results_file: str) -> list[str]:
     """The options for algorithm, threads, instruction set, answer and parameters of a case."""
     algorithm = case["algorithm"]
     answer = case.get("answer", "pairs")
     return as_options(
-        plugin=case.get("plugin") or None,
+        plugin=_plugin(case, results_file),
         algorithm=algorithm,
         threads=case["threads"],
         isa=case["isa"] if case.get("vectorised") else None,
@@ -66,5 +74,5 @@ def condition_words(case: dict[str, Any]) -> list[str]:
 
 def again_words(case: dict[str, Any], results_file: str) -> list[str]:
     """Arguments that run a case again from its results file, which verifies the recording."""
-    plugin = as_options(plugin=case.get("plugin") or None)
+    plugin = as_options(plugin=_plugin(case, results_file))
     return [results_file, "--case", str(case["id"]), *plugin]

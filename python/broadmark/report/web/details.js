@@ -33,17 +33,24 @@ function fillDetails(dialog, testCase) {
     facts("figures", figuresOf(testCase)),
     element("figure", {}),
     element("h3", {}, "Run it again"),
+    ...(testCase.family === "Python" ? [element("p", { class: "muted" }, "A function of Python: by broadmark.measure() with that function, on this recording.")]
+      : commandsOf(testCase)),
+    copyable("Hash of the recording", testCase.recording.hash || kNoValue, "hash"),
+    copyable("Case", testCase.id, "id"),
+    element("h3", {}, "Other values"),
+    facts("particulars", particularsOf(testCase)));
+  dialog.replaceChildren(parts);
+}
+
+function commandsOf(testCase) {
+  return [
     element("p", { class: "muted" }, "Run these commands in the folder in which this page was written; paths are relative to it."),
     copyable("From its results file, which verifies the recording",
              joined("broadmark --headless", testCase.again_command, testCase.condition_command), "again"),
     testCase.wrong_frames.length ? copyable("Export the smallest recording that shows the fault",
       joined("broadmark --headless", testCase.again_command, "--export-case small.aabbs"), "export") : null,
     copyable("Without the results file", joined("broadmark --headless", testCase.recording.command, testCase.variant_command, testCase.condition_command), "command"),
-    copyable("Hash of the recording", testCase.recording.hash || kNoValue, "hash"),
-    copyable("Case", testCase.id, "id"),
-    element("h3", {}, "Other values"),
-    facts("particulars", particularsOf(testCase)));
-  dialog.replaceChildren(parts);
+  ];
 }
 
 const joined = (...words) => words.filter(Boolean).join(" ");
@@ -71,7 +78,8 @@ function particularsOf(testCase) {
   const fields = kFields.filter((field) => field.particular && valueOf(field, testCase))
     .map((field) => [field.title, textOfField(field, testCase)]);
   return [
-    ["machine", machines[testCase.machine].name], ["algorithm", testCase.algorithm], ["family", testCase.family],
+    ["machine", machines[testCase.machine].name], ["commit", factOf(machines[testCase.machine], "Commit") || ""],
+    ["load before the case", testCase.load], ["algorithm", testCase.algorithm], ["family", testCase.family],
     ["parameters", testCase.params.replaceAll(";", ", ") || "none"], ["threads", testCase.threads],
     ["instruction set", testCase.isa || "not vectorised"], ["device", testCase.device],
     ["repetitions", testCase.repetitions_asked === null ? testCase.repetitions : `${testCase.repetitions} of ${testCase.repetitions_asked}`],

@@ -65,3 +65,16 @@ function drawNow(node) {
 function drawAll() {
   while (pendingDraws.size) for (const node of [...pendingDraws.keys()]) drawNow(node);
 }
+
+// A container that scrolls sideways, and shows while there is more to the right.
+function scrollable(node, attributes = {}) {
+  const scroll = element("div", { class: "scroll", ...attributes }, node);
+  const frame = element("div", { class: "scroll-frame" },
+    element("p", { class: "muted note on-screen scroll-hint", "aria-hidden": "true" }, "scroll sideways for more →"), scroll);
+  const update = () => frame.classList.toggle("more", scroll.scrollLeft + scroll.clientWidth < scroll.scrollWidth - 1);
+  scroll.addEventListener("scroll", update, { passive: true });
+  const sizes = new ResizeObserver(update);
+  sizes.observe(scroll);
+  sizes.observe(node);
+  return frame;
+}

@@ -24,11 +24,11 @@ function drawFailures(body) {
     ...gapLists());
 }
 
-// Variants without a case on recordings that the same machine ran with other variants.
+// Variants without a case on recordings of a file that has the variant on other recordings.
 function gapLists() {
   return machinesShown().flatMap((machine) => {
     const { rows, recordings: ranked } = rank(shown, machine);
-    const gaps = rows.map((row) => ({ row, missing: row.cells.filter((cell) => !cell.testCase) }))
+    const gaps = rows.map((row) => ({ row, missing: row.cells.filter((cell) => !cell.testCase && cell.asked) }))
       .filter((gap) => gap.missing.length);
     if (!gaps.length) return [];
     const where = machines.length > 1 ? ` on ${machines[machine].name}` : "";

@@ -7,7 +7,7 @@ function drawFrames(body) {
   if (!timed.includes(view.chosen)) view.chosen = defaultCase(timed);
   const chosen = view.chosen;
   const here = timed.filter((c) => c.machine === chosen.machine);
-  const candidates = here.filter((c) => c.recording === chosen.recording);
+  const candidates = here.filter((c) => c.recording === chosen.recording).sort((a, b) => isSelfCheck(a) - isSelfCheck(b));
   const select = (list, casesOf) => (i) => {
     const matching = casesOf(list[i]);
     view.chosen = matching.find((c) => c.variant === chosen.variant) || matching[0];

@@ -74,16 +74,20 @@ function spaced(ticks, scale, distance) {
 // cases}], front: the points of the Pareto front, labels: [{x, y, text}], note, empty: the text of an
 // empty chart.
 function drawPanel(container, chart) {
-  const title = element("h4", {}, chart.title);
-  if (machines.length > 1) title.append(element("div", { class: "muted" }, machines[chart.machine].name));
   const gaps = chart.gaps || [];
-  container.replaceChildren(title);
+  container.replaceChildren(titleOf(chart));
   if (!gaps.length && !chart.series.some((series) => series.points.some(Boolean))) {
     container.append(element("p", { class: "empty" }, chart.empty));
   } else {
     drawPlot(container, chart, gaps);
   }
   if (chart.note) container.append(element("p", { class: "muted note" }, chart.note));
+}
+
+function titleOf(chart) {
+  const title = element("h4", {}, chart.title);
+  if (machines.length > 1) title.append(element("div", { class: "muted" }, machines[chart.machine].name));
+  return title;
 }
 
 function drawPlot(container, chart, gaps) {
@@ -209,7 +213,7 @@ function addInteraction(svg, targets) {
     const box = svg.getBoundingClientRect();
     const scale = svg.viewBox.baseVal.width / box.width;
     const [px, py] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
-    const distance = (target) => Math.hypot(target.at[0] - px, target.at[1] - py);
+    const distance = (target) => Math.hypot(target.across ? 0 : target.at[0] - px, target.at[1] - py);
     const nearest = targets[d3.scan(targets, (a, b) => distance(a) - distance(b))];
     return nearest && distance(nearest) < kHitRadius ? nearest : null;
   };

@@ -16,8 +16,36 @@ markLastRuns(cases);
 
 const distinct = (values) => [...new Set(values)];
 
+// The files with cases of a variant, and those with cases on a recording, on each machine.
+const filesWith = new Map();
+for (const testCase of cases) {
+  for (const key of [`${testCase.machine} ${testCase.variant}`, testCase.recording]) {
+    if (!filesWith.has(key)) filesWith.set(key, new Set());
+    filesWith.get(key).add(testCase.file);
+  }
+}
+
+// Whether a file has both: then the variant should have run there.
+function wasAsked(machine, recording, variant) {
+  const files = filesWith.get(recording);
+  return [...filesWith.get(`${machine} ${variant}`)].some((file) => files.has(file));
+}
+
+// Squared standard errors of the logarithms of times, from the repetitions: halfway between a case's
+// own and the median of these cases, as few repetitions tell little. null: unknown.
+function variancesOf(column) {
+  const own = column.map((c) => (view.measure === "seconds_per_frame" && c && isTimed(c) && c.standard_error !== null
+    ? c.standard_error ** 2 : null));
+  const usual = d3.median(own.filter((variance) => variance !== null));
+  return own.map((variance) => (variance === null ? null : (variance + usual) / 2));
+}
+
+// Half the width of the 95 % interval of a ratio's logarithm; null: unknown.
+const halfInterval = (a, b) => (a === null || b === null ? null : 1.96 * Math.sqrt(a + b));
+
 // Variants and recordings of the cases on a machine, with a ratio or its absence in each cell. A gap
-// counts as twice the slowest in the geometric mean, so that leaving out hard cases is no advantage.
+// counts as twice the slowest in the geometric mean, so that leaving out hard cases is no advantage;
+// what was not asked for is no gap. Ratios within their uncertainty of 1 are ties.
 function rank(candidates, machine) {
   const own = candidates.filter((c) => c.machine === machine && !isSelfCheck(c) && !c.superseded);
   const ranked = distinct(own.map((c) => c.recording)).sort(byRecording);
@@ -27,13 +55,21 @@ function rank(candidates, machine) {
     const times = column.filter((c) => c && isTimed(c)).map((c) => c[view.measure]);
     const best = Math.min(...times);
     const penalty = 2 * Math.max(...times) / best;
+    const variances = variancesOf(column);
+    const bestVariance = variances[column.findIndex((c) => c && isTimed(c) && c[view.measure] === best)];
     column.forEach((testCase, i) => {
       const timed = testCase && isTimed(testCase);
-      rows[i].cells.push({ testCase, recording, ratio: timed ? testCase[view.measure] / best : null, penalty });
+      const value = timed ? testCase[view.measure] / best : null;
+      const half = timed && value > 1 ? halfInterval(variances[i], bestVariance) : null;
+      rows[i].cells.push({
+        testCase, recording, ratio: value, penalty, half, variance: variances[i],
+        tie: timed && (value === 1 || Math.log(value) <= half),
+        asked: Boolean(testCase) || wasAsked(machine, recording, rows[i].variant),
+      });
     });
   }
   for (const row of rows) {
-    const counted = row.cells.filter((cell) => Number.isFinite(cell.penalty));
+    const counted = row.cells.filter((cell) => cell.asked && Number.isFinite(cell.penalty));
     row.gaps = counted.filter((cell) => cell.ratio === null).length;
     row.recordingCount = counted.length;
     row.mean = counted.length === 0 || row.gaps === row.recordingCount ? null
@@ -41,7 +77,18 @@ function rank(candidates, machine) {
     row.family = row.cells.find((cell) => cell.testCase).testCase.family;
   }
   rows.sort((a, b) => (a.mean || Infinity) - (b.mean || Infinity) || (a.variant < b.variant ? -1 : 1));
+  const first = rows[0];
+  rows.forEach((row, i) => {
+    row.tie = row.mean !== null && (i === 0 || Math.log(row.mean / first.mean) <= halfInterval(varianceOf(row), varianceOf(first)));
+    row.rank = row.tie ? 1 : i + 1;
+  });
   return { machine, recordings: ranked, rows };
+}
+
+// Of a row's mean; null: unknown.
+function varianceOf(row) {
+  const known = row.cells.filter((cell) => cell.ratio !== null).map((cell) => cell.variance);
+  return known.includes(null) ? null : d3.sum(known) / known.length ** 2;
 }
 
 function byRecording(a, b) {

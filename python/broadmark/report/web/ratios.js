@@ -22,14 +22,14 @@ function drawRatios(body) {
     const section = element("div", { class: "ranking" });
     if (machines.length > 1) section.append(element("h3", {}, machines[ranking.machine].name));
     const total = ranking.recordings.length;
-    const begin = firstColumn < total ? firstColumn : 0;
-    const end = Math.min(begin + kMaxColumns, total);
-    if (total > kMaxColumns) section.append(columnPager(body, begin, end, total));
+    const begin = view.printing || firstColumn >= total ? 0 : firstColumn;
+    const end = view.printing ? total : Math.min(begin + kMaxColumns, total);
+    if (total > kMaxColumns && !view.printing) section.append(columnPager(body, begin, end, total));
     const step = view.printing ? kPrintedColumns : kMaxColumns;
     for (let first = begin; first < end; first += step) {
       section.append(ratioTable(ranking, first, Math.min(first + step, end)));
     }
-    const hidden = allRows ? 0 : ranking.rows.length - kMaxRows;
+    const hidden = allRows || view.printing ? 0 : ranking.rows.length - kMaxRows;
     if (hidden > 0) {
       section.append(button(`Show ${plural(hidden, "slower variant")}`, () => { allRows = true; drawRatios(body); }));
     }
@@ -52,10 +52,10 @@ function columnPager(body, begin, end, total) {
 
 // The means of each machine side by side. Nothing is computed across machines.
 function sideBySide(rankings) {
-  const means = rankings.map((ranking) => new Map(ranking.rows.map((row, i) => [row.variant, { ...row, rank: i + 1 }])));
+  const means = rankings.map((ranking) => new Map(ranking.rows.map((row) => [row.variant, row])));
   const variants = distinct(rankings.flatMap((ranking) => ranking.rows.map((row) => row.variant)));
   return element("div", { class: "ranking" }, element("h3", {}, "Machines side by side"),
-    element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Machines side by side" }, element("table", { class: "heat-table side" },
+    scrollable(element("table", { class: "heat-table side" },
       element("thead", {},
         element("tr", {}, element("td", {}),
           rankings.map((ranking) => element("th", { scope: "colgroup", colspan: 3 }, machines[ranking.machine].name))),
@@ -66,24 +66,24 @@ function sideBySide(rankings) {
           const row = mean.get(variant);
           if (!row) return [element("td", { class: "heat gap" }, "not run"), element("td"), element("td")];
           return [meanCell(row), element("td", {}, row.mean === null ? kNoValue : `${row.rank}.`), gapCell(row)];
-        })))))));
+        }))))), { tabindex: 0, role: "region", "aria-label": "Machines side by side" }));
 }
 
 function meanCell(row) {
   if (row.mean === null) return element("td", { class: "heat gap" }, kNoValue);
-  return element("td", { class: `heat mean ${heatClass(row.mean)}` }, ratio(row.mean));
+  return element("td", { class: `heat mean ${heatClass(row.mean, row.tie)}` }, ratio(row.mean));
 }
 
 function gapCell(row) {
   return element("td", { class: "gaps", title: `${row.gaps} of ${row.recordingCount} recordings missing` }, row.gaps || "");
 }
 
-function heatClass(value) {
-  return `h${kRatioLimits.findIndex((limit) => value <= limit)}`;
+function heatClass(value, tie) {
+  return tie ? "h0" : `h${Math.max(1, kRatioLimits.findIndex((limit) => value <= limit))}`;
 }
 
 function ratioTable({ machine, recordings: ranked, rows: ranking }, first, last) {
-  const rows = allRows ? ranking : ranking.slice(0, kMaxRows);
+  const rows = allRows || view.printing ? ranking : ranking.slice(0, kMaxRows);
   const columns = ranked.slice(first, last);
   const groups = d3.nest().key((recording) => recording.series).entries(columns);
   const table = element("table", { class: "heat-table", role: "grid",
@@ -98,20 +98,25 @@ function ratioTable({ machine, recordings: ranked, rows: ranking }, first, last)
       element("th", { scope: "row" }, row.variant), meanCell(row), gapCell(row),
       row.cells.slice(first, last).map(ratioCell)))));
   makeGrid(table, rows, first);
-  return element("div", { class: "scroll" }, table);
+  return scrollable(table);
 }
 
 function ratioCell(cell) {
-  if (cell.ratio === null) {
-    return element("td", { class: "heat gap", role: "gridcell" },
-                   !cell.testCase ? "not run" : cell.testCase.status === "ok" ? "no time" : cell.testCase.status);
-  }
-  return element("td", { class: `heat ${heatClass(cell.ratio)}`, role: "gridcell" }, ratio(cell.ratio));
+  if (cell.ratio === null) return element("td", { class: `heat ${cell.asked ? "gap" : "unasked"}`, role: "gridcell" }, absenceOf(cell));
+  return element("td", { class: `heat ${heatClass(cell.ratio, cell.tie)}`, role: "gridcell" }, ratio(cell.ratio),
+    cell.half === null || cell.ratio * cell.half < 0.005 ? null : element("small", {}, ` ±${ratio(cell.ratio * cell.half)}`));
 }
 
-function cellLines({ testCase, recording, ratio: value }, variant) {
-  if (!testCase) return [variant, recording.title, "not run"];
-  return [...caseLines(testCase), ...(value === null ? [] : [`${ratio(value)} times the best`])];
+function absenceOf({ testCase, asked }) {
+  if (!testCase) return asked ? "not run" : "not asked";
+  return testCase.status === "ok" ? "no time" : testCase.status;
+}
+
+function cellLines({ testCase, recording, ratio: value, half, tie, asked }, variant) {
+  if (!testCase) return [variant, recording.title, asked ? "not run" : "not asked for in the files with this recording"];
+  if (value === null) return caseLines(testCase);
+  const interval = half === null ? "" : `, 95 %: ${ratio(value * Math.exp(-half))} to ${ratio(value * Math.exp(half))}`;
+  return [...caseLines(testCase), `${ratio(value)} times the best${interval}${tie && value > 1 ? ": no slower within the noise" : ""}`];
 }
 
 // The table is a single tab stop; arrow keys move between cells.

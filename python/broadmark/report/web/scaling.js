@@ -1,4 +1,5 @@
-// Time over bodies: a chart per scene, object type and machine, all with the same axes.
+// Time over bodies: a chart per scene, object type and machine, all with the same axes. Of one number of
+// bodies: a row per variant.
 
 function drawScaling(body) {
   const latest = shown.filter((c) => !c.superseded);
@@ -10,16 +11,21 @@ function drawScaling(body) {
   const x = { domain: logDomain(objects), ticks: objects, format: d3.format("~s"), title: "bodies" };
   const yDomain = logDomain(timed.map((c) => c[view.measure]));
   const y = { domain: yDomain, ticks: decades(yDomain), format: (tick) => shortUnit(tick, kTimes) };
-  body.append(drawLegend([...variants].filter((variant) => latest.some((c) => c.variant === variant))));
+  const bySeries = d3.nest().key((c) => c.recording.series).entries(latest.slice().sort((a, b) => byRecording(a.recording, b.recording)));
+  const single = new Set(bySeries.filter(({ values }) => distinct(values.map((c) => c.recording.objects)).length === 1).map(({ key }) => key));
+  if (single.size < bySeries.length) body.append(drawLegend([...variants].filter((variant) => latest.some((c) => c.variant === variant))));
   const without = timed.filter((c) => !hasInterval(c)).length;
   if (without) {
     body.append(element("p", { class: "muted note" }, view.measure === "seconds_per_frame"
       ? `${without} of ${plural(timed.length, "point")} have a single repetition and therefore no interval.`
       : "Only means have intervals."));
   }
-  const bySeries = d3.nest().key((c) => c.recording.series).entries(latest.slice().sort((a, b) => byRecording(a.recording, b.recording)));
   drawGrid(body, bySeries.map((entry) => entry.key), (panel, series, machine) => {
     const panelCases = latest.filter((c) => c.recording.series === series && c.machine === machine && variants.has(c.variant));
+    if (single.has(series)) {
+      drawRows(panel, { kind: "Time per variant", title: panelCases.length ? panelCases[0].recording.title : series, machine, x: y, cases: panelCases });
+      return;
+    }
     drawPanel(panel, {
       kind: "Time over bodies", title: series, machine,
       x, y, lines: true, series: seriesOf(panelCases), gaps: gapsOf(panelCases), empty: "Not run on this machine.",

@@ -10,7 +10,7 @@ function drawSummary() {
   byId("summary").append(
     element("div", { class: "tiles" },
       tile(cases.length, "case"), tile(recordings.length, "recording"),
-      tile(distinct(cases.map((c) => c.algorithm)).length, "algorithm"), tile(machines.length, "machine"),
+      tile(distinct(cases.filter((c) => !isSelfCheck(c)).map((c) => c.algorithm)).length, "algorithm"), tile(machines.length, "machine"),
       element("div", { class: "tile statuses" }, statusCounts())),
     ...warnings().map((text) => element("p", { class: "notice" }, text)),
     ...gallery(),

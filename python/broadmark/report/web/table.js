@@ -1,7 +1,6 @@
 // A table with sortable columns and pages.
 
 const kRowsPerPage = 50;
-const kPrintedRows = 200;
 
 // columns: {title, value(row): the sort key, show(row), number, rank: from 1 (always shown) to 3 (only
 // on wide screens), name: a class of the cells}. The buttons of the first column open the details.
@@ -16,11 +15,13 @@ function makeTable(name, columns, start) {
     const sign = state.descending ? -1 : 1;
     const known = (value) => value !== null && value !== undefined && value !== "";
     const sortedRows = state.rows.map((row) => [column.value(row), row]);
-    sortedRows.sort(([a], [b]) => (!known(a) || !known(b) ? known(b) - known(a) : sign * (a < b ? -1 : a > b ? 1 : 0)));
-    const size = view.printing ? kPrintedRows : kRowsPerPage;
+    // Self-checks and unknown values come last.
+    sortedRows.sort(([a, rowA], [b, rowB]) => isSelfCheck(rowA) - isSelfCheck(rowB)
+      || (!known(a) || !known(b) ? known(b) - known(a) : sign * (a < b ? -1 : a > b ? 1 : 0)));
+    const size = view.printing ? Infinity : kRowsPerPage;
     const pages = Math.max(1, Math.ceil(sortedRows.length / size));
-    state.page = Math.min(state.page, pages - 1);
-    const first = state.page * size;
+    if (!view.printing) state.page = Math.min(state.page, pages - 1);
+    const first = view.printing ? 0 : state.page * size;
     const pageRows = sortedRows.slice(first, first + size).map(([, row]) => row);
     body.replaceChildren(...pageRows.map((row) => rowOf(columns, row)));
     head.replaceChildren(...columns.map((other, i) => header(other, i)));
@@ -46,7 +47,7 @@ function makeTable(name, columns, start) {
       }));
   };
   return {
-    node: element("div", {}, element("div", { class: "scroll" }, table), pager),
+    node: element("div", {}, scrollable(table), pager),
     show(rows) { state.rows = rows; draw(); },
   };
 }
