@@ -143,7 +143,7 @@ def test_what_another_file_did_not_ask_for_is_no_gap(opened: Page) -> None:
     more = write_results(opened.folder / "more.jsonl", [*many, case("sap", 200, 4e-5)])
     opened.show(few, more)
     rows = opened.ratios()
-    assert rows["sap"] == ["2.83", "1", "not asked", "2.00", "not run"]  # √(2 · 2 · 2)
+    assert rows["sap"] == ["3.46", "1", "not asked", "2.00", "not run"]  # √(2 · (2 · 3))
     assert rows["bf"][1:] == ["1", "2.00", "not run", "3.00"]
     opened.section("failures")
     assert "sap: on" not in " ".join(opened.texts("#failures li"))
