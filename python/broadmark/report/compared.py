@@ -46,6 +46,8 @@ def comparison(results: Results) -> tuple[dict[str, Any] | None, list[str]]:
     if all(row["ratio"] is None for row in rows):
         return None, []
     notes = [str(note) for note in document["notes"]]
+    for name, path in zip(names, paths):
+        notes = [note.replace(path, name) for note in notes]
     differences = {text for case in document["cases"] for text in case["conditions"]}
     return {
         "before": names[0],

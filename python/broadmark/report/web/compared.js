@@ -12,8 +12,14 @@ const kComparedColumns = [
   { title: "after", value: (c) => c.compared.seconds_after, show: (c) => time(c.compared.seconds_after), number: true, rank: 2 },
   { title: "ratio", value: (c) => c.compared.ratio, show: (c) => (c.compared.ratio === null ? kNoValue : c.compared.ratio.toFixed(3)), number: true, rank: 1 },
   { title: "95 %", value: (c) => c.compared.low, show: ({ compared: { low, high } }) => (low === null ? kNoValue : `${low.toFixed(3)} to ${high.toFixed(3)}`), number: true, rank: 2 },
-  { title: "verdict", value: (c) => (kVerdictOrder.indexOf(c.compared.verdict) + kVerdictOrder.length + 1) % (kVerdictOrder.length + 1), show: verdictMark, rank: 1 },
+  { title: "verdict", value: verdictOrder, show: verdictMark, rank: 1 },
 ];
+
+// Regressions first; of one verdict the largest ratio.
+function verdictOrder({ compared: { verdict, ratio: value } }) {
+  const place = kVerdictOrder.indexOf(verdict);
+  return 1e6 * (place < 0 ? kVerdictOrder.length : place) - (value || 0);
+}
 
 function verdictMark({ compared: { verdict, reason } }) {
   const kind = { REGRESSED: "mismatch", slower: "mismatch", faster: "ok" }[verdict] || "unsupported";
