@@ -21,7 +21,9 @@ from broadmark.paper.algorithms import BY_ID, PARALLEL, SCENES, SINGLE
 from broadmark.paper.figures import FigureOptions, curves, fastest_single, figure
 from broadmark.paper.times import times_by_machine
 from broadmark.plots import KINDS
-from broadmark.plots.scaling import fit
+from broadmark.plots import KINDS
+from broadmark.plots.cases import timed_cases
+from broadmark.plots.scaling import fit, scaling
 from broadmark.program import call
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -102,6 +104,10 @@ def test_the_axis_range_follows_the_results_unless_full(tmp_path: pathlib.Path) 
     with_paper = drawn(file, FigureOptions(paper=True)).axes[0]
     assert with_paper.get_xlim()[1] == pytest.approx(1024 * 1.02)
     assert sum((line.get_alpha() or 1) < 0.5 for line in with_paper.get_lines()) == 10
+    names = {text.get_text() for text in with_paper.texts}
+    assert {"BF ST", "SAP ST", "Tracy ST", "KD"} <= names  # every faint curve has its name
+    assert drawn(file, FigureOptions()).axes[0].get_ylim()[1] == pytest.approx(0.01 * 1.05)
+    assert with_paper.get_ylim()[1] == 0.55
     log = drawn(file, FigureOptions(log=True)).axes[0]
     assert (log.get_xscale(), log.get_yscale()) == ("log", "log") and log.get_ylim()[1] == 0.55
 
@@ -184,7 +190,7 @@ def test_every_kind(
     for text in ("Brownian cubes", "FreeFall cubes", "sap-mt/t1", "sap-mt/t2", "kd"):
         assert text in svg
     if kind == "scaling":
-        assert "exponent ± standard error" in svg
+        assert ">exponent<" in svg  # of two sizes
 
 
 def test_phases_require_a_single_case(
@@ -252,6 +258,35 @@ def test_an_exponent_and_its_error() -> None:
     _, exponent, error = fit(np.exp([0, 1, 2]), np.exp([0, 2, 1]))
     assert (exponent, error) == pytest.approx((0.5, math.sqrt(0.75)))
     assert math.isnan(fit([1, 2], [1, 2])[2])
+
+
+def test_two_sizes_have_no_standard_error(tmp_path: pathlib.Path) -> None:
+    for sizes, title in (
+        ((1000, 2000), "exponent"),
+        ((1000, 2000, 4000), "exponent ± standard error"),
+    ):
+        cases = [case("Brownian", n, "kd", 1e-6 * n) for n in sizes]
+        results = broadmark.read_results(write(tmp_path / "a.json", cases))
+        axes = scaling(timed_cases(results, log=True, note="")).subfigs[0].axes[0]
+        assert axes.get_legend().get_title().get_text() == title
+
+
+@pytest.mark.parametrize("kind", ["bars", "violins"])
+def test_every_row_is_named_and_no_panel_is_empty(kind: str, tmp_path: pathlib.Path) -> None:
+    cases = [case("Brownian", n, id_, 0.01) for n in (4000, 8000) for id_ in ("kd", "bf")]
+    cases += [case("Gravity", 1000, id_, 0.02) for id_ in ("sap", "cgal", "kd")]
+    results = broadmark.read_results(write(tmp_path / "a.json", cases))
+    upper = KINDS[kind](timed_cases(results, log=False, note="")).subfigs[0]
+    titles = [axes.get_title(loc="left") for axes in upper.axes]
+    assert titles == [
+        "Brownian cubes, 4,000 bodies",
+        "Brownian cubes, 8,000 bodies",
+        "Gravity cubes, 1,000 bodies",
+    ]
+    named = [[text.get_text() for text in axes.get_yticklabels()] for axes in upper.axes]
+    assert named[0] == ["bf", "kd"] and named[2] == ["sap", "cgal", "kd"]
+    rows = [int(axes.get_ylim()[0]) + 1 for axes in upper.axes]
+    assert rows == [2, 2, 3]
 
 
 def test_the_strip(tmp_path: pathlib.Path, command: Any) -> None:

@@ -33,6 +33,10 @@ PAPER_STYLES = {
     for algorithm in BY_ID.values()
 }
 
+#: The size of the axes, nearly, and the distance between names, in points.
+AXES_SIZE = (235, 200)
+NAME_DISTANCE = 7
+
 Points = list[tuple[float, float]]  #: thousands of objects, seconds
 
 
@@ -128,7 +132,8 @@ def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
     result.suptitle(f"{scene.title}: mean time per frame")
     panels = result.subplots(1, 2, sharey=True)
     for axes, panel in zip(panels, (SINGLE, PARALLEL)):
-        axes.set_title(panel[0].upper() + panel[1:], loc="left")
+        # Above the names of the paper's curves.
+        axes.set_title(panel[0].upper() + panel[1:], loc="left", pad=38 if options.paper else None)
         axes.set_xlabel("thousands of objects")
         for curve in _panel_curves(reference_curves, panel):
             style = {**style_of[curve.algorithm].line_properties(), "marker": "", "linewidth": 2.2}
@@ -155,6 +160,7 @@ def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
             handlelength=2.6,
         )
         _set_axes(axes, measured_curves, options)
+        _name_ends(axes, _panel_curves(reference_curves, panel), style_of)
     panels[0].set_ylabel("time per frame" if options.log else "seconds per frame")
     notes = [times.machine, *times.conditions]
     result.supxlabel("; ".join(notes), fontsize=6.5, color=light("faint"))
@@ -177,6 +183,41 @@ def _draw(axes: Any, curve: Curve, style: Style) -> None:
         axes.plot(*curve.timeout, "x", color=style.colour, markersize=6, zorder=3)
 
 
+def _name_ends(axes: Any, named: list[Curve], style_of: dict[str, Style]) -> None:
+    """Names the paper's curves where they leave the axes: above these, or to the right."""
+    above, right = [], []
+    for curve in named:
+        fractions = [_fraction_of(axes, point) for point in curve.points]
+        inside = [point for point in fractions if point[1] <= 1]
+        beyond = fractions[len(inside) : len(inside) + 1]
+        if inside and beyond:
+            (x, y), (next_x, next_y) = inside[-1], beyond[0]
+            above.append((x + (next_x - x) * (1 - y) / (next_y - y), curve))
+        elif inside:
+            right.append((inside[-1][1], curve))
+    for ends, size, place in ((above, AXES_SIZE[0], _above), (right, AXES_SIZE[1], _beside)):
+        last = -math.inf
+        for end, curve in sorted(ends, key=lambda entry: entry[0]):
+            last = max(end * size, last + NAME_DISTANCE)  # no name covers another
+            colour = style_of[curve.algorithm].colour
+            axes.annotate(curve.label, fontsize=6, color=colour, alpha=0.8, **place(last / size))
+
+
+def _above(x: float) -> dict[str, Any]:
+    at = {"xy": (x, 1.01), "xycoords": "axes fraction"}
+    return {**at, "rotation": 60, "rotation_mode": "anchor", "ha": "left", "va": "center"}
+
+
+def _beside(y: float) -> dict[str, Any]:
+    return {"xy": (1.01, y), "xycoords": "axes fraction", "ha": "left", "va": "center"}
+
+
+def _fraction_of(axes: Any, point: tuple[float, float]) -> tuple[float, float]:
+    """A point as a share of the axes."""
+    x, y = axes.transLimits.transform(axes.transScale.transform(point))
+    return float(x), float(y)
+
+
 def _set_axes(axes: Any, measured_curves: list[Curve], options: FigureOptions) -> None:
     measured = [
         n for curve in measured_curves for n, _ in [*curve.points, *filter(None, [curve.timeout])]
@@ -193,9 +234,16 @@ def _set_axes(axes: Any, measured_curves: list[Curve], options: FigureOptions) -
         axes.xaxis.set_minor_locator(NullLocator())
         axes.grid(True, which="minor", axis="y", linewidth=0.25)
     else:
-        axes.set(xlim=(0, max_thousands * 1.02), ylim=(0, MAX_SECONDS))  # room for the last marker
+        seconds = [
+            s
+            for curve in measured_curves
+            for _, s in [*curve.points, *filter(None, [curve.timeout])]
+        ]
+        top = MAX_SECONDS if full else min(MAX_SECONDS, max(seconds) * 1.05)
+        axes.set(xlim=(0, max_thousands * 1.02), ylim=(0, top))  # room for the last marker
         if max_thousands == MAX_THOUSANDS:
             axes.set_xticks(range(0, MAX_THOUSANDS + 1, 128))
         else:
             axes.xaxis.set_major_locator(MaxNLocator(8))
-    axes.axhline(CAP_SECONDS, color=light("border"), linewidth=0.7, zorder=1)
+    if axes.get_ylim()[1] > CAP_SECONDS:
+        axes.axhline(CAP_SECONDS, color=light("border"), linewidth=0.7, zorder=1)

@@ -16,9 +16,9 @@ from broadmark.plots.panels import by_scene_and_size, label_rows
 def bars(cases: Cases) -> Figure:
     """mean time per frame, by scene and number of bodies, with 95 % confidence intervals"""
     styles = cases.styles
-    rows = {label: row for row, label in enumerate(styles)}
 
     def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        rows = cases.rows_of(panel_cases["panel"].iloc[0])
         y = panel_cases["label"].map(rows)
         milliseconds = panel_cases["seconds_per_frame"] * 1e3
         colours = [styles[label].colour for label in panel_cases["label"]]
@@ -50,7 +50,12 @@ def bars(cases: Cases) -> Figure:
             )
         label_rows(axes, list(rows))
 
-    size = (2.4, 0.6 + 0.15 * len(rows))
     return by_scene_and_size(
-        cases, paint, size=size, x="milliseconds", y="", legend=False, sharey=True
+        cases,
+        paint,
+        size=(2.4, lambda scene: 0.6 + 0.15 * len(cases.rows_of(scene))),
+        x="milliseconds",
+        y="",
+        legend=False,
+        sharey="row",
     )

@@ -37,6 +37,11 @@ class Cases:
             for label, algorithm in algorithms.items()
         }
 
+    def rows_of(self, panel: str) -> dict[str, int]:
+        """The row of each label among those of a scene, in plots with a row per label."""
+        labels = self.table.loc[self.table["panel"] == panel, "label"].unique()
+        return {label: row for row, label in enumerate(labels)}
+
     def mean_frames(self, case: int) -> pd.DataFrame:
         """The frames of a case, averaged over the repetitions."""
         frames = self.results.frames

@@ -15,22 +15,18 @@ from broadmark.plots.cases import Cases
 #: Draws the cases of a panel.
 Painter = Callable[[Any, pd.DataFrame], None]
 
+MAX_COLUMNS = 5
+
 NOTE = {"fontsize": 6.5, "color": light("faint")}
 
 
 def by_scene_and_size(cases: Cases, paint: Painter, **options: Any) -> Figure:
-    """A row of panels per scene with a panel per number of bodies."""
-    table = cases.table
-    rows = [
-        [
-            (
-                f"{scene}, {objects:,} bodies",
-                table[(table["panel"] == scene) & (table["objects"] == objects)],
-            )
-            for objects in sorted(table["objects"].unique())
-        ]
-        for scene in table["panel"].unique()
-    ]
+    """Rows of panels per scene with a panel per number of bodies that it has."""
+    rows = []
+    for scene, own in cases.table.groupby("panel", sort=False):
+        sizes = sorted(own["objects"].unique())
+        panels = [(f"{scene}, {n:,} bodies", own[own["objects"] == n]) for n in sizes]
+        rows += [panels[i : i + MAX_COLUMNS] for i in range(0, len(panels), MAX_COLUMNS)]
     return _panels(cases, rows, paint, **options)
 
 
@@ -53,32 +49,34 @@ def _panels(
     rows: list[list[tuple[str, pd.DataFrame]]],
     paint: Painter,
     *,
-    size: tuple[float, float],
+    size: tuple[float, float | Callable[[str], float]],
     x: str,
     y: str,
     legend: bool,
     **sharing: Any,
 ) -> Figure:
-    """`size` is a panel's size in inches; `x` and `y` are axis labels; subplots() gets `sharing`."""
-    width = max(size[0] * len(rows[0]) + 0.4, 4)
-    height = size[1] * len(rows) + 0.3
+    """`size` is a panel's size in inches, its height perhaps by scene; `x` and `y` are axis labels;
+    subplots() gets `sharing`."""
+    count = max(map(len, rows))
+    width = max(size[0] * count + 0.4, 4)
+    heights = [size[1](r[0][1]["panel"].iloc[0]) if callable(size[1]) else size[1] for r in rows]
+    height = sum(heights) + 0.3
     labels = list(cases.styles) if legend else []
     columns = max(1, min(int(width / 1.45), len(labels)))
     legend_height = 0.32 + 0.17 * math.ceil(len(labels) / columns)
     figure = Figure(figsize=(width, height + legend_height), layout="constrained")
     upper, lower = figure.subfigures(2, 1, height_ratios=[height, legend_height])
-    grid = upper.subplots(len(rows), len(rows[0]), squeeze=False, **sharing)
+    grid = upper.subplots(len(rows), count, squeeze=False, height_ratios=heights, **sharing)
     handles: dict[str, Any] = {}
     for row, axes_of_row in zip(rows, grid):
+        for axes in axes_of_row[len(row) :]:
+            axes.remove()
         for (title, panel_cases), axes in zip(row, axes_of_row):
             axes.set_title(title, loc="left")
-            if not len(panel_cases):
-                axes.set_axis_off()
-                continue
             paint(axes, panel_cases)
             handles |= {line.get_label(): line for line in axes.get_lines()}
-    for axes in grid[-1]:
-        axes.set_xlabel(x)
+    for column in grid.T:  # below the last panel
+        [axes for axes in column if axes.figure][-1].set_xlabel(x)
     for axes in grid[:, 0]:
         axes.set_ylabel(y)
     if legend:

@@ -37,6 +37,7 @@ def scaling(cases: Cases) -> Figure:
         raise InputError("scaling requires results of at least two numbers of bodies")
 
     def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        has_error = False
         for label, series in panel_cases.groupby("label", sort=False):
             x, y = series["objects"].to_numpy(), series["seconds_per_frame"].to_numpy(float)
             name = label
@@ -45,6 +46,7 @@ def scaling(cases: Cases) -> Figure:
                 ends = np.array([x.min(), x.max()])
                 colour = styles[label].colour
                 axes.plot(ends, factor * ends**exponent, color=colour, linewidth=0.7, alpha=0.6)
+                has_error |= not math.isnan(error)
                 name += f"  {exponent:.2f}" + ("" if math.isnan(error) else f" ± {error:.2f}")
             axes.plot(x, y, **styles[label].point_properties(), label=name)
         log_scale(axes, "x")
@@ -53,7 +55,7 @@ def scaling(cases: Cases) -> Figure:
         axes.xaxis.set_major_formatter(EngFormatter(sep=""))
         axes.xaxis.set_minor_locator(NullLocator())
         axes.legend(
-            title="exponent ± standard error",
+            title="exponent ± standard error" if has_error else "exponent",
             loc="upper left",
             bbox_to_anchor=(1.01, 1.02),
             ncol=1 + len(panel_cases["label"].unique()) // 18,

@@ -17,7 +17,6 @@ from broadmark.plots.panels import by_scene_and_size, label_rows
 def violins(cases: Cases) -> Figure:
     """distribution of all frame times; a dash marks the median"""
     styles = cases.styles
-    rows = {label: row for row, label in enumerate(styles)}
     times = {
         case: frames["total_ns"].to_numpy() / 1e6
         for case, frames in cases.results.frames.groupby("case")
@@ -25,6 +24,7 @@ def violins(cases: Cases) -> Figure:
     }
 
     def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        rows = cases.rows_of(panel_cases["panel"].iloc[0])
         for case, label in panel_cases["label"].items():
             values = np.log10(times[case]) if cases.log else times[case]
             violin = axes.violinplot(
@@ -39,7 +39,12 @@ def violins(cases: Cases) -> Figure:
             axes.set_xlim(left=0)
         label_rows(axes, list(rows))
 
-    size = (2.4, 0.6 + 0.17 * len(rows))
     return by_scene_and_size(
-        cases, paint, size=size, x="milliseconds per frame", y="", legend=False, sharey=True
+        cases,
+        paint,
+        size=(2.4, lambda scene: 0.6 + 0.17 * len(cases.rows_of(scene))),
+        x="milliseconds per frame",
+        y="",
+        legend=False,
+        sharey="row",
     )
