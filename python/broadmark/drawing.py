@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullFormatter
 
 from broadmark.errors import InputError
-from broadmark.files import atomic_write
+from broadmark.files import atomic_write, is_standard_output
 from broadmark.palette import LIGHT, curves_of, light
 from broadmark.paper.algorithms import BY_ID
 
@@ -57,7 +57,10 @@ SETTINGS = {
 
 
 def check_format(path: str | os.PathLike[str]) -> str:
-    """The format of a file name's extension. Raises InputError for an unknown extension."""
+    """The format of a file name's extension, SVG for standard output. Raises InputError for an unknown
+    extension."""
+    if is_standard_output(path):
+        return "svg"
     kind = pathlib.PurePath(path).suffix[1:]
     if kind not in FORMATS:
         raise InputError(f"{path}: the extension must be .svg, .pdf or .png")

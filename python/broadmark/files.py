@@ -14,7 +14,12 @@ from broadmark.errors import InputError
 
 @contextlib.contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[Any]:
-    """A binary file that replaces `path` once it is complete and on the disk. An error removes it."""
+    """A binary file that replaces `path` once it is complete and on the disk. An error removes it.
+    "-" is standard output."""
+    if is_standard_output(path):
+        sys.stdout.flush()
+        yield sys.stdout.buffer
+        return
     path = pathlib.Path(path)
     partial = path.with_name(path.name + f".{os.getpid()}.partial")
     try:
@@ -27,7 +32,18 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Any]:
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None
     finally:
-        partial.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # it was renamed, or could not be made
+            partial.unlink()
+
+
+def is_standard_output(path: str | os.PathLike[str]) -> bool:
+    return os.fspath(path) == "-"
+
+
+def report_written(path: str | os.PathLike[str], more: str = "") -> None:
+    """Prints that a file was written; not among what is written to standard output."""
+    if not is_standard_output(path):
+        print(f"written: {os.fspath(path)}{more}")
 
 
 def sync_folder(path: pathlib.Path) -> None:
@@ -40,15 +56,11 @@ def sync_folder(path: pathlib.Path) -> None:
 
 
 def write_text(path: str | None, text: str) -> None:
-    """Writes a text to a file; prints it if `path` is None or "-"."""
+    """Writes a text to a file, or standard output if `path` is None."""
     write_bytes(path or "-", text.encode())
 
 
 def write_bytes(path: str, content: bytes) -> None:
-    """Writes a file, or standard output if `path` is "-"."""
-    if path == "-":
-        sys.stdout.flush()
-        sys.stdout.buffer.write(content)
-        return
+    """Writes a file, as atomic_write()."""
     with atomic_write(path) as file:
         file.write(content)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+import json
 import pathlib
 import subprocess
 import sys
@@ -134,15 +135,77 @@ def test_parquet_needs_pyarrow(
         assert status == 0 and frames["objects"].mean() == 150
 
 
-@pytest.mark.parametrize("option", ["--csv", "--csv-frames"])
+def cases_for_everything() -> list[dict[str, Any]]:
+    more = {"vectorised": False, "differences": []}
+    return [case("Brownian", n, "kd", 1e-4, **more) for n in (1000, 4000)]
+
+
+CAMPAIGN = {
+    "schema": "broadmark-campaign/1",
+    "recordings": [{"scenes": "brownian", "objects": 40, "frames": 2}],
+    "algorithm": ["kd"],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "option"),
+    [
+        *(
+            ("read", "--csv={}"),
+            ("read", "--csv-frames={}"),
+            ("table2", "-o{}"),
+            ("claims", "-o{}"),
+        ),
+        *(("plot bars", "-o{}.svg"), ("report --no-pictures", "-o{}"), ("history", "--json={}")),
+        *(("history", "-o{}.svg"), ("figures", "-o{}"), ("campaign", "-o{}")),
+    ],
+)
+@pytest.mark.parametrize("place", ["missing/out", "file/out", "folder"])
 def test_unwritable_outputs_are_status_2(
-    small_results: pathlib.Path, command: Any, option: str
+    name: str, option: str, place: str, tmp_path: pathlib.Path, command: Any
 ) -> None:
-    status, _, error = command("read", small_results / "results.json", option, "/no/such/a.csv")
-    assert (status, error) == (
-        2,
-        "broadmark: /no/such/a.csv: cannot be written: No such file or directory\n",
-    )
+    if place == "folder" and name in ("figures", "campaign"):
+        pytest.skip("a folder is what they write")
+    if place == "missing/out" and name in ("figures", "campaign"):
+        pytest.skip("they make the folder")
+    (tmp_path / "file").touch()
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.svg").mkdir()
+    source = write(tmp_path / "r.json", cases_for_everything())
+    if name == "campaign":
+        source = tmp_path / "c.json"
+        source.write_text(json.dumps(CAMPAIGN))
+    words = [*name.split(), source, option.format(tmp_path / place)]
+    status, _, error = command(*words)
+    assert status == 2, (words, error)
+    last = error.splitlines()[-1]
+    assert last.startswith("broadmark: ") and place in last and "Traceback" not in error
+
+
+@pytest.mark.parametrize(
+    ("words", "begins"),
+    [
+        (["read", "--csv"], "case,id"),
+        (["table2", "-o"], "A processor"),
+        (["claims", "-o"], "A number counts"),
+        (["plot", "bars", "-o"], "<?xml"),
+        (["report", "--no-pictures", "-o"], "<!DOCTYPE html>"),
+        (["history", "--json"], "{"),
+    ],
+)
+def test_a_dash_is_standard_output(
+    words: list[str],
+    begins: str,
+    tmp_path: pathlib.Path,
+    command: Any,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "r.json", cases_for_everything())
+    arguments = [words[0], *words[1:-1], "r.json", words[-1], "-"]
+    status, out, _ = command(*arguments)
+    assert status == 0 and out.startswith(begins), out[:200]
+    assert [path.name for path in tmp_path.iterdir()] == ["r.json"]
 
 
 def test_short_times_keep_their_digits(tmp_path: pathlib.Path, command: Any) -> None:

@@ -237,6 +237,10 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
         *("--copy-to", "$LOCAL_DISK", "--sbatch", "--job-name='a campaign' --time=5"),
     )
     assert status == 0 and out.startswith("submitted: "), err
+    numbers = out.split()[1:]
+    status, out, err = command("campaign", file, "--output", output, "--slurm")
+    assert (status, out) == (2, "") and "its jobs are queued already" in err
+    assert err.strip().split()[-1] in numbers
 
     before: dict[tuple[int, str], Any] = {}
     for seed, is_hard in ((1, True), (2, False)):  # SIGKILL, SIGTERM
@@ -280,6 +284,9 @@ def test_a_rejected_submission_leaves_no_job(
     assert not cluster.jobs()
 
     assert command(*arguments, "--list")[0] == 0
+    script = (tmp_path / "out/slurm/submit").read_text()
+    for name in ("bake-40", "run-320", "merge"):  # after the campaign
+        assert f"--job-name=out-{name} " in script
     merge = tmp_path / "out/slurm/merge.sh"
     merge.unlink()  # the last job's script
     with pytest.raises(broadmark.InputError, match="merge.sh"):

@@ -31,9 +31,17 @@ from broadmark.program import VARIABLE, find_program
 
 SUBMIT = """\
 #!/bin/bash
-# Submits the jobs of a campaign. If Slurm rejects a job, all are cancelled.
+# Submits the jobs of a campaign, unless earlier ones are still queued. If Slurm rejects a job, all are
+# cancelled. The file `submitted` has the jobs' numbers.
 set -eE
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
+if [ -e submitted ]; then
+  queued=$(squeue --noheader --format=%F | sort -u | grep -xF -f submitted || true)
+  if [ -n "$queued" ]; then
+    echo "its jobs are queued already: wait for them, or scancel" $queued >&2
+    exit 1
+  fi
+fi
 submitted=()
 trap '[ ${#submitted[@]} -eq 0 ] || scancel "${submitted[@]}"' ERR
 submit() {  # the variable for the job's number, then arguments for sbatch
@@ -42,6 +50,11 @@ submit() {  # the variable for the job's number, then arguments for sbatch
   printf -v "$1" %s "${job%%;*}"
   submitted+=("${job%%;*}")
 }
+"""
+
+SUBMITTED = """\
+printf '%s\\n' "${submitted[@]}" >submitted
+echo "${submitted[*]}"
 """
 
 JOB = """\
@@ -113,7 +126,8 @@ def write(folder: Folder, jobs: list[Job], sbatch: str) -> pathlib.Path:
     for job in jobs:
         write_text(os.fspath(slurm_folder / f"{job.name}.sh"), _script(folder, job))
     submit = slurm_folder / "submit"
-    lines = [SUBMIT, *(_submission(job, sbatch) for job in jobs), 'echo "${submitted[*]}"\n']
+    campaign = folder.path.resolve().name
+    lines = [SUBMIT, *(_submission(campaign, job, sbatch) for job in jobs), SUBMITTED]
     write_text(os.fspath(submit), "".join(lines))
     submit.chmod(0o755)
     return submit
@@ -130,11 +144,12 @@ def submit(script: pathlib.Path) -> str:
     return completed.stdout.strip()
 
 
-def _submission(job: Job, sbatch: str) -> str:
+def _submission(campaign: str, job: Job, sbatch: str) -> str:
     """The line that submits a job. The user's options come last and take precedence."""
     array = [f"--array=0-{len(job.recordings) - 1}"] if job.recordings else []
     log = f"{job.name}.%a.log" if job.recordings else f"{job.name}.log"
-    words = [*array, f"--output={log}", *job.options, *shlex.split(sbatch)]
+    names = [f"--job-name={campaign}-{job.name}", f"--output={log}"]
+    words = [*array, *names, *job.options, *shlex.split(sbatch)]
     after = ",".join(
         f"{condition}:${{{dependency.variable}}}" for condition, dependency in job.after
     )

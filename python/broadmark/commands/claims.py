@@ -19,7 +19,7 @@ from broadmark.paper.verdicts import FORMATS, Verdicts
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
     parser.add_argument("--format", choices=list(FORMATS), default="text", help="default: text")
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
+    parser.add_argument("-o", "--output", metavar="FILE", help="'-', the default: standard output")
 
 
 def main(options: argparse.Namespace) -> None:

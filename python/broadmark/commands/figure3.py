@@ -10,6 +10,7 @@ import argparse
 import pathlib
 
 from broadmark.errors import InputError
+from broadmark.files import report_written
 from broadmark.paper.strip import StripPanel, write_strip
 from broadmark.recordings import read_recording
 
@@ -36,7 +37,7 @@ def main(options: argparse.Namespace) -> None:
     if not panels:
         panels = [_scene_panel(options.scene, text) for text in options.objects.split(",")]
     write_strip(options.output, panels, options.frame)
-    print(f"written: {options.output}")
+    report_written(options.output)
 
 
 def _recording_panel(path: str) -> StripPanel:

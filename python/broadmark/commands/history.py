@@ -92,7 +92,7 @@ def main(options: argparse.Namespace) -> None:
         print(text_table(found), end="")
     for path, text in ((options.json, json_text), (options.csv, csv_text)):
         if path is not None:
-            write_text(None if path == "-" else path, text(found))
+            write_text(path, text(found))
     if options.output:
         _draw(found, options.output)
 

@@ -11,6 +11,7 @@ import sys
 from broadmark import selection
 from broadmark.drawing import check_format, draw
 from broadmark.errors import InputError
+from broadmark.files import report_written
 from broadmark.plots import KINDS
 from broadmark.plots.cases import timed_cases
 
@@ -22,7 +23,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     selection.add_options(parser)
     parser.add_argument(
-        "-o", "--output", required=True, metavar="FILE", help="the image (.svg, .pdf, .png)"
+        "-o",
+        "--output",
+        required=True,
+        metavar="FILE",
+        help="the image (.svg, .pdf, .png); '-': standard output, SVG",
     )
     selection.add_case_options(parser)
     parser.add_argument("--log", action="store_true", help="use logarithmic time axes")
@@ -41,4 +46,4 @@ def main(options: argparse.Namespace) -> None:
         summary = ", ".join(f"{count} {status}" for status, count in counts.items())
         print(f"cases without a time are not shown: {summary}", file=sys.stderr)
     draw([options.output], lambda: KINDS[options.kind](cases))
-    print(f"written: {options.output}")
+    report_written(options.output)

@@ -8,15 +8,21 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 
 from broadmark import selection
+from broadmark.files import is_standard_output, report_written
 from broadmark.report import write_report
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
     parser.add_argument(
-        "-o", "--output", default="report.html", metavar="FILE", help="default: %(default)s"
+        "-o",
+        "--output",
+        default="report.html",
+        metavar="FILE",
+        help="'-': standard output (default: %(default)s)",
     )
     parser.add_argument("--title", default="Broadmark results", help="default: %(default)s")
     parser.add_argument(
@@ -32,6 +38,7 @@ def main(options: argparse.Namespace) -> None:
     for note in write_report(
         results, options.output, title=options.title, pictures=options.pictures
     ):
-        print(note)
-    size = os.path.getsize(options.output) / 1e6
-    print(f"written: {options.output} ({size:.1f} MB, {len(results.cases)} cases)")
+        print(note, file=sys.stderr if is_standard_output(options.output) else sys.stdout)
+    if not is_standard_output(options.output):
+        size = os.path.getsize(options.output) / 1e6
+        report_written(options.output, f" ({size:.1f} MB, {len(results.cases)} cases)")

@@ -19,7 +19,7 @@ from broadmark.paper.times import times_by_machine
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
     parser.add_argument("--format", choices=list(FORMATS), default="text", help="default: text")
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
+    parser.add_argument("-o", "--output", metavar="FILE", help="'-', the default: standard output")
 
 
 def main(options: argparse.Namespace) -> None:
