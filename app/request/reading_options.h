@@ -14,7 +14,7 @@ struct ReadingOptions : Parametrised {
   bool swept = false;
   double widen = 0;
   std::string periodic;
-  Choice format{"auto", {"auto", "csv", "xyz", "lammps", "ply", "obj", "stl", "gltf"}};
+  Choice format{"auto", {"auto", "csv", "xyz", "lammps", "ply", "obj", "stl", "gltf", "numpy"}};
   bool strict = false;
   Choice elements{"triangles", {"vertices", "edges", "triangles", "all"}};
   Choice keep{"none", {"none", "shared-vertices"}};

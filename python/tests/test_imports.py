@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import pathlib
 import random
+import zipfile
 from typing import Any
 
 import numpy as np
@@ -163,3 +164,89 @@ def test_random_worlds_are_read_as_they_are(tmp_path: pathlib.Path, write: Any) 
                 centre = np.array(bodies[body])
                 expected = np.stack([centre - radius, centre + radius])
                 np.testing.assert_allclose(box, expected, rtol=1e-6, atol=1e-5, err_msg=str(seed))
+
+
+NUMPY_TYPES = ["<f4", ">f4", "<f8", ">f8", "|i1", "|u1", "<i2", ">u2", "<i4", ">u4", "<i8", ">u8"]
+
+
+@pytest.mark.parametrize("kind", NUMPY_TYPES)
+@pytest.mark.parametrize("archive", ["npy", "npz", "compressed"])
+def test_arrays_are_read_as_python_reads_them(
+    kind: str, archive: str, tmp_path: pathlib.Path
+) -> None:
+    generator = np.random.default_rng(len(kind) + ord(kind[1]))
+    low = generator.uniform(0, 100, (4, 9, 1, 3)).astype(kind)
+    boxes = np.concatenate([low, low + np.array(3).astype(kind)], axis=2)
+    if kind[1:] in ("i8", "u8"):
+        boxes = boxes + np.array(2**62 + 1).astype(kind)  # between doubles
+    source = tmp_path / "boxes.dat"  # recognised by its content
+    with open(source, "wb") as file:
+        if archive == "npy":
+            np.save(file, boxes)
+        elif archive == "npz":
+            np.savez(file, other=[1, 2], boxes=boxes.reshape(4, 9, 6))
+        else:
+            np.savez_compressed(file, anything=boxes)
+    call("import", str(source), "-o", str(tmp_path / "read.aabbs"), "--quiet")
+    broadmark.write_recording(tmp_path / "written.aabbs", boxes)
+    read, written = (
+        broadmark.read_recording(tmp_path / f"{name}.aabbs") for name in ("read", "written")
+    )
+    np.testing.assert_array_equal(read.boxes, written.boxes)
+    np.testing.assert_array_equal(read.world, written.world)
+
+
+def test_arrays_may_have_absent_bodies_and_be_a_sequence(tmp_path: pathlib.Path) -> None:
+    box = np.array([[0, 0, 0], [1, 1, 1]], np.float32)
+    for number in range(12):  # frame10 comes after frame9
+        second = broadmark.EMPTY_BOX if number == 5 else box + np.float32(number / 20)
+        np.save(tmp_path / f"frame{number}.npy", np.stack([box, second]))
+    results = broadmark.run(f"{tmp_path}/frame*.npy", algorithm="bf,tide")
+    assert set(results.cases["status"]) == {"ok"} and results.cases["frames"][0] == 11
+    assert list(results.frames["pairs"][:11]) == [1] * 4 + [0] + [1] * 6
+
+
+@pytest.mark.parametrize(
+    ("array", "message"),
+    [
+        (np.zeros((3, 2, 5)), r"its shape is \(3, 2, 5\): \(frames, bodies, 2, 3\)"),
+        (np.zeros(6), "its shape is"),
+        (np.zeros((0, 2, 6)), ".*: it has no frame"),
+        (np.asfortranarray(np.zeros((3, 2, 6))), ".*Fortran's order"),
+        (np.zeros((2, 2, 6), np.float16), "its type is '<f2': integers, or floats of 32 or 64"),
+        (np.zeros((2, 2, 6), complex), "its type is '<c16'"),
+        (np.zeros((2, 2, 6), [("a", "f4")]), "its type is"),
+        (np.full((2, 2, 6), np.nan), "frame 0, body 0: nan"),
+        (np.full((2, 2, 6), 1e300), "frame 0, body 0: .* is not finite in 32 bits"),
+        (np.array([[[0, 0, 0, 1, 1, 1]], [[0, 2, 0, 1, 1, 1]]]), "frame 1, body 0: min 2 is above"),
+    ],
+)
+def test_other_arrays_are_refused(array: Any, message: str, tmp_path: pathlib.Path) -> None:
+    np.save(tmp_path / "a.npy", array)
+    with pytest.raises(broadmark.InputError, match="a.npy: " + message):
+        call("verify", str(tmp_path / "a.npy"))
+
+
+def test_other_archives_are_refused(tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "a.npz"
+
+    def refused(message: str) -> None:
+        with pytest.raises(broadmark.InputError, match="a.npz: " + message):
+            call("verify", str(path))
+
+    boxes = np.random.default_rng(1).uniform(0, 1, (20, 9, 1, 3)) + [[0, 0, 0], [1, 1, 1]]
+    np.savez(path, first=boxes, second=boxes)
+    refused("holds first, second: a single array, or one named 'boxes', is expected")
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("readme.txt", "none")
+    refused("holds no array")
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_BZIP2) as archive:
+        np.save(tmp_path / "a.npy", boxes)
+        archive.write(tmp_path / "a.npy", "a.npy")
+    refused("array 'a': is compressed by method 12: use numpy.savez")
+    np.savez_compressed(path, boxes)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-30])
+    refused("the archive has no directory")
+    path.write_bytes(whole[:2000] + bytes([whole[2000] ^ 64]) + whole[2001:])
+    refused("array 'arr_0': its c")  # compressed data, or checksum
