@@ -11,6 +11,9 @@ from conftest import SOURCE_FOLDER
 
 EXAMPLES = SOURCE_FOLDER / "python/examples"
 
+#: The pictures of notebooks that have any.
+PICTURES = {"first_steps": 2, "own_algorithm": 1, "tables": 1}
+
 
 def examples_in(document: str) -> list[Any]:
     text = (SOURCE_FOLDER / document).read_text("utf-8")
@@ -57,4 +60,10 @@ def test_notebooks_run(
     client = nbclient.NotebookClient(book, timeout=300, resources={"metadata": {"path": tmp_path}})
     client.execute()
     shown = [output for cell in book.cells for output in cell.get("outputs", [])]
-    assert sum("image/png" in output.get("data", {}) for output in shown) == 2
+    texts = " ".join("".join(output.get("text", "")) for output in shown)
+    assert not re.search("^broadmark: |Traceback", texts, re.MULTILINE), texts  # of commands
+    if notebook.stem in PICTURES:
+        kinds = [kind for output in shown for kind in output.get("data", {})]
+        assert (
+            sum(kind in ("image/png", "image/svg+xml") for kind in kinds) == PICTURES[notebook.stem]
+        )
