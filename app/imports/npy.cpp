@@ -88,7 +88,8 @@ Entry readEntry(ByteReader& reader) {
   const std::uint64_t extra_end = reader.offset() + extra_bytes;
   while (reader.offset() + 4 <= extra_end) {
     const auto kind = little<std::uint16_t>(reader);
-    const std::uint64_t next = reader.offset() + 2 + little<std::uint16_t>(reader);
+    const auto bytes = little<std::uint16_t>(reader);
+    const std::uint64_t next = reader.offset() + bytes;
     constexpr std::uint16_t kSizes = 1;
     if (kind == kSizes) {
       for (std::uint64_t* value : {&entry.size, &entry.packed_size, &entry.local}) {
@@ -222,8 +223,9 @@ void NpyBoxes::inflateMember(Extent packed, std::uint64_t size, std::uint32_t ch
   std::uint64_t written = 0;
   auto sum = static_cast<std::uint32_t>(::crc32(0, nullptr, 0));
   int status = Z_OK;
+  bool more = false;  // there may be output of earlier input
   while (status != Z_STREAM_END) {
-    if (stream.avail_in == 0) {
+    if (stream.avail_in == 0 && !more) {
       const auto wanted = std::min<std::uint64_t>(input.size(), packed.size - read);
       const auto got = readAll(file.get(), std::span(input).first(wanted), packed.begin + read);
       if (got == 0) fail("its compressed data ends too early");
@@ -234,7 +236,9 @@ void NpyBoxes::inflateMember(Extent packed, std::uint64_t size, std::uint32_t ch
     stream.next_out = reinterpret_cast<Bytef*>(output.data());
     stream.avail_out = static_cast<uInt>(output.size());
     status = ::inflate(&stream, Z_NO_FLUSH);
+    if (status == Z_BUF_ERROR && more) status = Z_OK;
     if (status != Z_OK && status != Z_STREAM_END) fail("its compressed data is damaged");
+    more = stream.avail_out == 0;
     const std::size_t made = output.size() - stream.avail_out;
     written += made;
     if (written > size) fail("is larger than the archive's directory says");

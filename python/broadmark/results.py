@@ -164,7 +164,7 @@ class Results:
         """Cases, algorithms, recordings, machines and files: a line each."""
         cases = self.cases
         statuses = cases["status"].value_counts()
-        algorithms = sorted(cases["algorithm"].unique())
+        algorithms = sorted(cases["algorithm"][cases["family"] != "self-check"].unique())
         sizes = sorted(cases["objects"].unique())
         recordings = cases["recording_hash"].nunique() if len(cases) else 0
         counts = ", ".join(f"{count:,} {status}" for status, count in statuses.items())
@@ -249,7 +249,8 @@ def _combined(documents: list[_Document]) -> Results:
                     f"{document.file}: case {case.get('id', len(rows))!r}: does not match "
                     f"docs/results.md: {type(error).__name__} {error}"
                 ) from None
-            rows.append({"case": len(rows), **row, "file": document.file})
+            known = {key: np.nan if value is None else value for key, value in row.items()}
+            rows.append({"case": len(rows), **known, "file": document.file})
             details.append(case)
     machines = _machine_names(environments)
     columns = ["case", *(column["key"] for column in COLUMNS)]
@@ -261,7 +262,6 @@ def _combined(documents: list[_Document]) -> Results:
     except (OverflowError, TypeError, ValueError) as error:
         names = ", ".join(document.file for document in documents)
         raise InputError(f"{names}: {error}") from None
-    cases = cases.fillna(np.nan)  # None in columns of texts
     cases["machine"] = [machines[number] for number in cases["environment"]]
     table["machine"] = machines
     files = [_file_row(document) for document in documents]

@@ -196,6 +196,16 @@ def test_arrays_are_read_as_python_reads_them(
     np.testing.assert_array_equal(read.world, written.world)
 
 
+def test_an_array_may_be_far_larger_than_its_archive(tmp_path: pathlib.Path) -> None:
+    boxes = np.zeros((40, 3000, 6))
+    boxes[-1, -1, 3:] = 7
+    np.savez_compressed(tmp_path / "a.npz", boxes)
+    assert (tmp_path / "a.npz").stat().st_size < boxes.nbytes / 500
+    call("import", str(tmp_path / "a.npz"), "-o", str(tmp_path / "a.aabbs"), "--quiet")
+    recording = broadmark.read_recording(tmp_path / "a.aabbs")
+    np.testing.assert_array_equal(recording.boxes, boxes.reshape(40, 3000, 2, 3))
+
+
 def test_arrays_may_have_absent_bodies_and_be_a_sequence(tmp_path: pathlib.Path) -> None:
     box = np.array([[0, 0, 0], [1, 1, 1]], np.float32)
     for number in range(12):  # frame10 comes after frame9

@@ -1,6 +1,7 @@
 """Writes results as a self-contained HTML page with tables, charts and pictures.
 
 The page needs no network, can be filtered and sorted, and compares the results of several machines.
+Two files are also compared as before and after, as by `broadmark compare`.
 Charts are drawn by d3 (Debian's package node-d3), pictures by the program broadmark.
 """
 

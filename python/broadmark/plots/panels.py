@@ -75,8 +75,9 @@ def _panels(
             axes.set_title(title, loc="left")
             paint(axes, panel_cases)
             handles |= {line.get_label(): line for line in axes.get_lines()}
-    for column in grid.T:  # below the last panel
-        [axes for axes in column if axes.figure][-1].set_xlabel(x)
+    for column in range(count):  # below its last panel
+        last = max(number for number, row in enumerate(rows) if len(row) > column)
+        grid[last, column].set_xlabel(x)
     for axes in grid[:, 0]:
         axes.set_ylabel(y)
     if legend:

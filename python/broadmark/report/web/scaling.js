@@ -1,5 +1,5 @@
-// Time over bodies: a chart per scene, object type and machine, all with the same axes. Of one number of
-// bodies: a row per variant.
+// Time over bodies: a chart per scene, object type and machine, all with the same axes. With a
+// single number of bodies: a row per variant.
 
 function drawScaling(body) {
   const latest = shown.filter((c) => !c.superseded);
