@@ -15,6 +15,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/exact_sum.h"
+#include "broadmark/json_fields.h"
 #include "support/contents.h"
 #include "support/line_reader.h"
 

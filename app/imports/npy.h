@@ -1,6 +1,7 @@
 // Boxes in NumPy's files: an array in a .npy file, or in a .npz archive, stored or deflated.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <optional>

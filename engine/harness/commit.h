@@ -1,10 +1,10 @@
 // The commit that this build is of: a source file that each build generates (cmake/Commit.cmake).
 #pragma once
 
-namespace broadmark {
+namespace broadmark::build {
 
-extern const char* const kCommit;      ///< 40 digits; "" if unknown
-extern const char* const kCommitDate;  ///< ISO 8601; "" if unknown
-extern const bool kDirty;              ///< its sources had other changes
+extern const char* const commit;       ///< 40 digits; "" if unknown
+extern const char* const commit_date;  ///< ISO 8601; "" if unknown
+extern const bool dirty;               ///< its sources had other changes
 
-}  // namespace broadmark
+}  // namespace broadmark::build

@@ -98,9 +98,9 @@ Environment thisEnvironment() {
       .compiler_flags = BROADMARK_FLAGS,
       .build_type = BROADMARK_BUILD_TYPE,
       .version = BROADMARK_VERSION,
-      .commit = kCommit,
-      .commit_date = kCommitDate,
-      .dirty = kDirty,
+      .commit = build::commit,
+      .commit_date = build::commit_date,
+      .dirty = build::dirty,
       .started = utcNow()};
   ::getloadavg(&environment.load_average, 1);
   return environment;

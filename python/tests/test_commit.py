@@ -12,8 +12,9 @@ from conftest import SOURCE_FOLDER
 
 def git(folder: pathlib.Path, *arguments: str) -> str:
     identity = ["-c", "user.name=a", "-c", "user.email=a@localhost"]
-    command = ["git", "-C", folder, *identity, *arguments]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    command = ["git", "-C", str(folder), *identity, *arguments]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    return done.stdout.strip()
 
 
 def stated(source: pathlib.Path, given: str = "") -> tuple[str, str, str]:
