@@ -90,8 +90,8 @@ endif()
 
 # Documents and the files that they link to, in folders that match the links.
 include(cmake/Copyright.cmake)
-install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md LICENSE
-  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md
+  LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs integrations DESTINATION ${CMAKE_INSTALL_DOCDIR}
   PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY assets/scenes assets/pictures assets/workflows DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)

@@ -60,7 +60,7 @@ std::string pluginFile(const std::string& name_or_path) {
   if (!plugin->built) {
     throw InputError(
         fmt::format("--plugin: {}: not built: {} was not found when this program was configured "
-                    "(find_package({}), see 'Physics SDKs' in the README)",
+                    "(find_package({}), see docs/installing.md)",
                     name_or_path, plugin->releases, plugin->package));
   }
   return fileOf(name_or_path).string();

@@ -27,9 +27,9 @@ def test_the_readme_has_an_example_of_five_lines() -> None:
 @pytest.mark.parametrize(
     "example",
     [
-        e
-        for page in ("README.md", "docs/embedding.md", "docs/results.md")
-        for e in examples_in(page)
+        example
+        for document in ("README.md", "docs/embedding.md", "docs/python.md", "docs/results.md")
+        for example in examples_in(document)
     ],
 )
 def test_examples_run(

@@ -25,11 +25,11 @@ TEST(ExitStatus, OfCases) {
   EXPECT_EQ(endOf({Status::timeout, Status::mismatch}), 1) << "a wrong answer says more";
 }
 
-TEST(ExitStatus, AreExplainedInTheReadme) {
-  const std::string readme = readTextFile(places::source("README.md"));
+TEST(ExitStatus, AreDocumented) {
+  const std::string document = readTextFile(places::source("docs/running.md"));
   std::set<int> values;
   for (const auto& [value, meaning] : kExitStatuses.entries) {
-    EXPECT_THAT(readme, testing::HasSubstr(fmt::format("\n| {} | ", static_cast<int>(value))));
+    EXPECT_THAT(document, testing::HasSubstr(fmt::format("\n| {} | ", static_cast<int>(value))));
     EXPECT_TRUE(values.insert(value).second);
   }
 }

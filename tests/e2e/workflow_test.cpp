@@ -108,8 +108,8 @@ TEST_F(Workflow, RunsStepByStep) {
   EXPECT_THAT(readFile(file("shell.out")), Not(HasSubstr("not found")));
 }
 
-TEST_F(Workflow, IsTheOneInTheReadme) {
-  EXPECT_THAT(readFile(places::source("README.md")), HasSubstr("assets/workflows/duel.yml"));
+TEST_F(Workflow, IsTheDocumentedOne) {
+  EXPECT_THAT(readFile(places::source("docs/comparing.md")), HasSubstr("assets/workflows/duel.yml"));
 }
 
 }  // namespace
