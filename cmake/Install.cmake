@@ -93,7 +93,7 @@ include(cmake/Copyright.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md
   LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs integrations DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  PATTERN __pycache__ EXCLUDE)
+  PATTERN __pycache__ EXCLUDE PATTERN docs/site EXCLUDE)
 install(DIRECTORY assets/scenes assets/pictures assets/workflows DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
 install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/python
   PATTERN .ipynb_checkpoints EXCLUDE)
