@@ -342,11 +342,11 @@ Algorithm externalAlgorithm(const std::string& plugin) {
                      // One program for all worlds.
                      .side_by_side_below = std::numeric_limits<std::size_t>::max(),
                      .self_timed = true},
-          .description = {.principle = "not stated",
+          .description = {.principle = description->principle,
                           .optimisations = "",
-                          .time = "not stated",
-                          .space = "not stated",
-                          .source = command},
+                          .time = description->time,
+                          .space = description->space,
+                          .source = description->source},
           .create = [description] { return std::make_unique<ExternalBroadPhase>(description); },
           .plugin = plugin};
 }
