@@ -16,8 +16,7 @@ Algorithm find(const std::string& id, const std::string& plugin) {
   const std::vector<Algorithm> known =
       availableAlgorithms(plugin.empty() ? std::vector<std::string>() : std::vector{plugin});
   const bool is_missing = !plugin.empty() && findAlgorithm(id, known) == nullptr;
-  if (is_missing)
-    throw InputError(fmt::format("--plugin: {}: has no algorithm '{}'", plugin, id));
+  if (is_missing) throw InputError(fmt::format("--plugin: {}: has no algorithm '{}'", plugin, id));
   return requireAlgorithm(id, known);
 }
 

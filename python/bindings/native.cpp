@@ -200,13 +200,12 @@ Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
                  const std::string& isa, const ParameterValues& parameters,
                  const std::string& plugin, const std::string& program) {
   const bool built_in = plugin.empty();
-  const Case test_case =
-      built_in
-          ? makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", withCurrentNames(parameters))
-          : Case{.algorithm = {.id = algorithm, .plugin = plugin},
-                 .isa = isaOf(isa),
-                 .threads = threads,
-                 .parameters = parameters};
+  const Case test_case = built_in ? makeCase(algorithmOf(algorithm), isaOf(isa), threads, "",
+                                             withCurrentNames(parameters))
+                                  : Case{.algorithm = {.id = algorithm, .plugin = plugin},
+                                         .isa = isaOf(isa),
+                                         .threads = threads,
+                                         .parameters = parameters};
   const std::span<const float> numbers(boxes.data(), static_cast<std::size_t>(boxes.size()));
   std::vector<Pair> pairs;
   try {

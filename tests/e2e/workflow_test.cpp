@@ -109,7 +109,8 @@ TEST_F(Workflow, RunsStepByStep) {
 }
 
 TEST_F(Workflow, IsTheDocumentedOne) {
-  EXPECT_THAT(readFile(places::source("docs/comparing.md")), HasSubstr("assets/workflows/duel.yml"));
+  EXPECT_THAT(readFile(places::source("docs/comparing.md")),
+              HasSubstr("assets/workflows/duel.yml"));
 }
 
 }  // namespace

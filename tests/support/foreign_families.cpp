@@ -1,5 +1,5 @@
-// The algorithms of shared libraries with the C interface, and of programs, in place of the built-in
-// ones.
+// The algorithms of shared libraries with the C interface, and of programs, in place of the
+// built-in ones.
 
 #include <dlfcn.h>
 
