@@ -89,7 +89,8 @@ TEST_F(BadInput, AnInstructionSetThatIsNotHere) {
 
 TEST_F(BadInput, AMemoryLimitBelowThatOfAnEmptyProcess) {
   if (tests::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-  expectRunRefused({"--memory-limit", "0.001"}, {"--memory-limit", "0.001 GiB", "worker process"});
+  expectRunRefused({"--memory-limit", "0.0001"},
+                   {"--memory-limit", "0.0001 GiB", "worker process"});
 }
 
 TEST_F(BadInput, PercentagesWithoutASign) {

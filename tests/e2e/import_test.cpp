@@ -114,7 +114,7 @@ TEST_F(Import, AnySourceCanBeWidened) {
   runQuietly({"--headless", "wide.broadmark", "--algorithm", "sap", "--json", "i.json"});
   EXPECT_THAT(pairsOf(file("i.json")), ElementsAre(1, 1));
   runQuietly({"--headless", "brownian", "--objects", "40", "--frames", "4", "--swept", "--widen",
-              "0.25", "--algorithm", "sap,bf-simd,axis-sweep,cgal", "--check", "full", "--json",
+              "0.25", "--algorithm", "sap,bf-simd,axis-sweep,dbvt-d", "--check", "full", "--json",
               "b.json"});
   const Json scene = readJson(file("b.json"))["cases"][0];
   EXPECT_EQ(scene["recording"]["name"], "Brownian swept widened");
