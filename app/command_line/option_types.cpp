@@ -12,8 +12,8 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/scenes/registry.h"
 #include "command_line/usage.h"
-#include "request/external_program.h"
 #include "request/former_names.h"
+#include "request/plugins.h"
 #include "request/sweep.h"
 #include "support/words.h"
 

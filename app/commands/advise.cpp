@@ -31,6 +31,7 @@
 #include "run/recordings.h"
 #include "run/warnings.h"
 #include "sources/make_source.h"
+#include "support/clock.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/output.h"
@@ -41,10 +42,6 @@ namespace broadmark::commands::advise {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 struct Options : RunRequest {
   std::string source;

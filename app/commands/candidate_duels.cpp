@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "broadmark/harness/runner.h"
+#include "support/clock.h"
 #include "support/interrupt.h"
 #include "support/words.h"
 
@@ -24,10 +25,6 @@ constexpr std::size_t kMaxDuellists = 12;
 constexpr double kMinFrames = 16;
 
 using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 std::string nameWithoutAnswer(const Candidate& candidate) {
   Case test_case = candidate.test_case;

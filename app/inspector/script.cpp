@@ -13,6 +13,7 @@
 #include "broadmark/files.h"
 #include "broadmark/names.h"
 #include "request/former_names.h"
+#include "support/clock.h"
 #include "support/words.h"
 
 namespace broadmark {
@@ -68,10 +69,6 @@ InputEvent buttonEvent(int button, bool down) {
 }
 InputEvent keyEvent(Key key, bool down) {
   return {.kind = InputEvent::Kind::key, .code = key, .down = down};
-}
-
-double secondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "request/described_parameters.h"
 
 namespace broadmark {
 namespace {
@@ -29,30 +30,30 @@ PairRun pairsOf(const broadmark_pairs& pairs) {
   return {reinterpret_cast<const Pair*>(pairs.pairs), pairs.count};
 }
 
+std::vector<ParameterDescription> describedBy(const broadmark_algorithm& table) {
+  std::vector<ParameterDescription> descriptions;
+  for (std::size_t i = 0; i < table.parameter_count; ++i) {
+    const broadmark_parameter& parameter = table.parameters[i];
+    descriptions.push_back({.name = textOf(parameter.name),
+                            .doc = textOf(parameter.doc),
+                            .value = parameter.value,
+                            .min = parameter.min,
+                            .max = parameter.max,
+                            .is_integer = parameter.is_integer != 0});
+  }
+  return descriptions;
+}
+
 class CBroadPhase final : public BroadPhase {
  public:
-  explicit CBroadPhase(Table table) : table_(std::move(table)) {
-    for (std::size_t i = 0; i < table_->parameter_count; ++i) {
-      integers_.push_back(static_cast<std::int64_t>(table_->parameters[i].value));
-      reals_.push_back(table_->parameters[i].value);
-    }
-  }
+  explicit CBroadPhase(Table table) : table_(std::move(table)), parameters_(describedBy(*table_)) {}
   ~CBroadPhase() override {
     if (instance_ != nullptr) table_->destroy(instance_);
   }
   CBroadPhase(const CBroadPhase&) = delete;
   CBroadPhase& operator=(const CBroadPhase&) = delete;
 
-  void visitParameters(const ParameterVisitor& visit) override {
-    for (std::size_t i = 0; i < table_->parameter_count; ++i) {
-      const broadmark_parameter& parameter = table_->parameters[i];
-      Parameter view{.name = parameter.name, .doc = parameter.doc, .value = &reals_[i]};
-      if (parameter.is_integer != 0) view.value = &integers_[i];
-      view.min = parameter.min;
-      view.max = parameter.max;
-      visit(view);
-    }
-  }
+  void visitParameters(const ParameterVisitor& visit) override { parameters_.visit(visit); }
   [[nodiscard]] float margin() const override {
     return table_->margin == nullptr ? 0 : table_->margin(values().data());
   }
@@ -109,10 +110,9 @@ class CBroadPhase final : public BroadPhase {
 
  private:
   [[nodiscard]] std::vector<double> values() const {
-    std::vector<double> values = reals_;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (table_->parameters[i].is_integer != 0) values[i] = static_cast<double>(integers_[i]);
-    }
+    std::vector<double> values;
+    parameters_.eachValue(
+        [&](const std::string&, auto value) { values.push_back(static_cast<double>(value)); });
     return values;
   }
 
@@ -144,8 +144,7 @@ class CBroadPhase final : public BroadPhase {
   }
 
   Table table_;
-  std::vector<std::int64_t> integers_;
-  std::vector<double> reals_;
+  DescribedParameters parameters_;
   CollisionFilter filter_;
   bool events_ = false;
   void* instance_ = nullptr;

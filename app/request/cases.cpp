@@ -15,9 +15,7 @@
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "original/ids.h"
-#include "request/external_program.h"
 #include "request/former_names.h"
-#include "request/logged_pairs.h"
 #include "request/plugins.h"
 #include "request/sweep.h"
 #include "support/words.h"
@@ -219,7 +217,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
 /// Length of the plug-in's prefix in a case's name: "FILE.so:", "NAME:" of an SDK plug-in,
 /// "external:COMMAND:" or "pairs:LOG:".
 static std::size_t pluginPrefixLength(const std::string& name) {
-  if (isExternal(name) || isPairLog(name)) return name.rfind(':') + 1;
+  if (!isLibrary(name)) return name.rfind(':') + 1;
   constexpr std::string_view kLibraryEnd = ".so:";
   const auto library = name.find(kLibraryEnd);
   if (library != std::string::npos) return library + kLibraryEnd.size();

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,9 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstring>
-#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -24,6 +21,8 @@
 #include "broadmark/harness/child_process.h"
 #include "broadmark/harness/shared_memory.h"
 #include "broadmark/json_fields.h"
+#include "broadmark/names.h"
+#include "request/described_parameters.h"
 #include "support/line_channel.h"
 
 namespace broadmark {
@@ -37,14 +36,6 @@ constexpr int kProtocolVersion = 1;
 // with an offset of their own.
 constexpr char kFramesFile[] = "/proc/self/fd/3";
 constexpr char kPairsFile[] = "/proc/self/fd/4";
-
-std::string commandOf(const std::string& plugin) {
-  return plugin.substr(sizeof(kExternalPrefix) - 1);
-}
-
-std::runtime_error systemError(const char* what) {
-  return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
-}
 
 std::string endText(int wait_status) {
   if (WIFSIGNALED(wait_status)) {
@@ -116,22 +107,12 @@ class Program {
 };
 
 void requireKnownKeys(const Json& json, const std::string& name,
-                      std::initializer_list<std::string_view> known) {
+                      const std::vector<std::string>& known) {
   for (const auto& item : json.items()) {
     if (std::ranges::find(known, item.key()) != known.end()) continue;
-    throw InputError(fmt::format("{}: unknown key '{}': one of {} is expected", name, item.key(),
-                                 fmt::join(known, ", ")));
+    throw InputError(fmt::format("{}: {}", name, unknownName("key", item.key(), known)));
   }
 }
-
-struct ExternalParameter {
-  std::string name;
-  std::string doc;
-  double value = 0;
-  double min = std::numeric_limits<double>::lowest();
-  double max = std::numeric_limits<double>::max();
-  bool integer = false;
-};
 
 struct Description {
   std::string command;
@@ -144,7 +125,7 @@ struct Description {
   std::string source = command;
   bool parallel = false;
   bool incremental = false;
-  std::vector<ExternalParameter> parameters;
+  std::vector<ParameterDescription> parameters;
   /// A number, or the name of the parameter that is the margin.
   std::variant<double, std::string> margin = 0.0;
 };
@@ -174,11 +155,11 @@ Description descriptionFrom(const Json& json, const std::string& command) {
   read(fields, "incremental", description.incremental);
   if (fields.has("parameters")) {
     fields.eachObject("parameters", [&](const JsonFields& entry) {
-      ExternalParameter parameter{.name = entry.text("name"), .doc = entry.text("doc")};
+      ParameterDescription parameter{.name = entry.text("name"), .doc = entry.text("doc")};
       entry.read("value", parameter.value);
       read(entry, "min", parameter.min);
       read(entry, "max", parameter.max);
-      read(entry, "integer", parameter.integer);
+      read(entry, "integer", parameter.is_integer);
       description.parameters.push_back(std::move(parameter));
     });
     for (const Json& entry : json.at("parameters")) {
@@ -192,7 +173,7 @@ Description descriptionFrom(const Json& json, const std::string& command) {
     return description;
   }
   const std::string name = fields.text("margin");
-  if (std::ranges::find(description.parameters, name, &ExternalParameter::name) ==
+  if (std::ranges::find(description.parameters, name, &ParameterDescription::name) ==
       description.parameters.end()) {
     throw InputError(
         fmt::format("{}: a number or the name of a parameter is expected", fields.path("margin")));
@@ -204,23 +185,9 @@ Description descriptionFrom(const Json& json, const std::string& command) {
 class ExternalBroadPhase final : public BroadPhase {
  public:
   explicit ExternalBroadPhase(std::shared_ptr<const Description> description)
-      : description_(std::move(description)) {
-    for (const ExternalParameter& parameter : description_->parameters) {
-      reals_.push_back(parameter.value);
-      integers_.push_back(static_cast<std::int64_t>(std::llround(parameter.value)));
-    }
-  }
+      : description_(std::move(description)), parameters_(description_->parameters) {}
 
-  void visitParameters(const ParameterVisitor& visit) override {
-    for (std::size_t i = 0; i < reals_.size(); ++i) {
-      const ExternalParameter& parameter = description_->parameters[i];
-      Parameter view{.name = parameter.name, .doc = parameter.doc, .value = &reals_[i]};
-      if (parameter.integer) view.value = &integers_[i];
-      view.min = parameter.min;
-      view.max = parameter.max;
-      visit(view);
-    }
-  }
+  void visitParameters(const ParameterVisitor& visit) override { parameters_.visit(visit); }
   [[nodiscard]] float margin() const override {
     if (const auto* value = std::get_if<double>(&description_->margin)) {
       return static_cast<float>(*value);
@@ -289,10 +256,7 @@ class ExternalBroadPhase final : public BroadPhase {
 
   [[nodiscard]] Json values() const {
     Json values = Json::object();
-    for (std::size_t i = 0; i < reals_.size(); ++i) {
-      const ExternalParameter& parameter = description_->parameters[i];
-      values[parameter.name] = parameter.integer ? Json(integers_[i]) : Json(reals_[i]);
-    }
+    parameters_.eachValue([&](const std::string& name, auto value) { values[name] = value; });
     return values;
   }
 
@@ -303,8 +267,7 @@ class ExternalBroadPhase final : public BroadPhase {
   }
 
   std::shared_ptr<const Description> description_;
-  std::vector<double> reals_;
-  std::vector<std::int64_t> integers_;
+  DescribedParameters parameters_;
   std::optional<Program> program_;
   Json call_;
   TransferTimes overhead_;
@@ -314,10 +277,7 @@ class ExternalBroadPhase final : public BroadPhase {
 
 }  // namespace
 
-bool isExternal(const std::string& plugin) { return plugin.starts_with(kExternalPrefix); }
-
-Algorithm externalAlgorithm(const std::string& plugin) {
-  const std::string command = commandOf(plugin);
+Algorithm externalAlgorithm(const std::string& command) {
   constexpr std::chrono::seconds kLimit{20};
   const auto end = Clock::now() + kLimit;
   const auto description = std::make_shared<Description>();
@@ -332,23 +292,24 @@ Algorithm externalAlgorithm(const std::string& plugin) {
   } catch (const std::exception& error) {
     throw InputError(fmt::format("--external: {}: {}", command, error.what()));
   }
-  return {.id = description->id,
-          .family = description->family + " (self-timed)",
-          .summary = description->summary,
-          .traits = {.parallel = description->parallel,
-                     .incremental = description->incremental,
-                     .changing_worlds = description->incremental ? ChangingWorlds::unknown
-                                                                 : ChangingWorlds::compacted,
-                     // One program for all worlds.
-                     .side_by_side_below = std::numeric_limits<std::size_t>::max(),
-                     .self_timed = true},
-          .description = {.principle = description->principle,
-                          .optimisations = "",
-                          .time = description->time,
-                          .space = description->space,
-                          .source = description->source},
-          .create = [description] { return std::make_unique<ExternalBroadPhase>(description); },
-          .plugin = plugin};
+  return {
+      .id = description->id,
+      .family = description->family + " (self-timed)",
+      .summary = description->summary,
+      .traits = {.parallel = description->parallel,
+                 .incremental = description->incremental,
+                 .changing_worlds =
+                     description->incremental ? ChangingWorlds::unknown : ChangingWorlds::compacted,
+                 // One program for all worlds.
+                 .side_by_side_below = std::numeric_limits<std::size_t>::max(),
+                 .self_timed = true},
+      .description = {.principle = description->principle,
+                      .optimisations = "",
+                      .time = description->time,
+                      .space = description->space,
+                      .source = description->source},
+      .create = [description] { return std::make_unique<ExternalBroadPhase>(description); },
+  };
 }
 
 }  // namespace broadmark

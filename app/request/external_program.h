@@ -8,14 +8,9 @@
 
 namespace broadmark {
 
-/// What stands before the command in --plugin.
-inline constexpr char kExternalPrefix[] = "external:";
-
-bool isExternal(const std::string& plugin);
-
-/// The algorithm of the program that a plug-in "external:COMMAND" starts, asked for its
-/// description. Each instance has a process of its own. Throws InputError if it cannot be started,
-/// or gives no such description.
-Algorithm externalAlgorithm(const std::string& plugin);
+/// The algorithm of the program that a shell command starts, asked for its description. Each
+/// instance has a process of its own. Throws InputError if it cannot be started, or gives no such
+/// description.
+Algorithm externalAlgorithm(const std::string& command);
 
 }  // namespace broadmark

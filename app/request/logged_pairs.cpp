@@ -9,8 +9,6 @@
 namespace broadmark {
 namespace {
 
-std::string fileOf(const std::string& plugin) { return plugin.substr(sizeof(kPairLogPrefix) - 1); }
-
 class LoggedPairs final : public BroadPhase {
  public:
   explicit LoggedPairs(std::string file) : file_(std::move(file)) {}
@@ -38,10 +36,8 @@ class LoggedPairs final : public BroadPhase {
 
 }  // namespace
 
-bool isPairLog(const std::string& plugin) { return plugin.starts_with(kPairLogPrefix); }
-
-Algorithm loggedPairs(const std::string& plugin) {
-  openForReading(fileOf(plugin));
+Algorithm loggedPairs(const std::string& file) {
+  openForReading(file);
   return {.id = "logged",
           .family = "Logged",
           .summary = "the pairs that a program logged; their times are those of reading the log",
@@ -50,9 +46,8 @@ Algorithm loggedPairs(const std::string& plugin) {
                           .optimisations = "",
                           .time = "not stated",
                           .space = "not stated",
-                          .source = plugin},
-          .create = [file = fileOf(plugin)] { return std::make_unique<LoggedPairs>(file); },
-          .plugin = plugin};
+                          .source = file},
+          .create = [file] { return std::make_unique<LoggedPairs>(file); }};
 }
 
 }  // namespace broadmark

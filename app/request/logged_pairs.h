@@ -8,13 +8,8 @@
 
 namespace broadmark {
 
-/// What stands before the file's name in --plugin.
-inline constexpr char kPairLogPrefix[] = "pairs:";
-
-bool isPairLog(const std::string& plugin);
-
-/// The algorithm "logged", for a plug-in "pairs:FILE". The file is read by its instances, which
-/// then throw InputError for a damaged one. Throws InputError if there is no such file.
-Algorithm loggedPairs(const std::string& plugin);
+/// The algorithm "logged". The file is read by its instances, which then throw InputError for a
+/// damaged one. Throws InputError if there is no such file.
+Algorithm loggedPairs(const std::string& file);
 
 }  // namespace broadmark

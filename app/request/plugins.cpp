@@ -195,11 +195,29 @@ std::vector<Entry> entriesOf(const Plugin<Entry>& plugin, const std::string& fil
   throw InputError(fmt::format("--plugin: {}: has no {}s", file, kind));
 }
 
-/// The algorithms of a pair log, or those that a library exports through either interface; it may
-/// have engines instead.
+/// Algorithms that come from no library.
+struct OtherSource {
+  std::string_view prefix;
+  Algorithm (*open)(const std::string& argument);
+};
+constexpr OtherSource kOtherSources[] = {{kPairLogPrefix, loggedPairs},
+                                         {kExternalPrefix, externalAlgorithm}};
+
+/// Null for a library.
+const OtherSource* otherSource(const std::string& plugin) {
+  const auto* const found = std::ranges::find_if(
+      kOtherSources, [&](const OtherSource& source) { return plugin.starts_with(source.prefix); });
+  return found == std::end(kOtherSources) ? nullptr : found;
+}
+
+/// The algorithm of a pair log or a program, or those that a library exports through either
+/// interface; it may have engines instead.
 std::vector<Algorithm> algorithmsIn(const std::string& file) {
-  if (isPairLog(file)) return {loggedPairs(file)};
-  if (isExternal(file)) return {externalAlgorithm(file)};
+  if (const OtherSource* source = otherSource(file)) {
+    Algorithm algorithm = source->open(file.substr(source->prefix.size()));
+    algorithm.plugin = file;
+    return {std::move(algorithm)};
+  }
   void* const library = load(file);
   std::vector<Algorithm> algorithms;
   PluginBuild build;
@@ -230,6 +248,8 @@ std::vector<SdkPlugin> sdkPlugins() {
   return all;
 }
 
+bool isLibrary(const std::string& plugin) { return otherSource(plugin) == nullptr; }
+
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
   std::vector<Algorithm> algorithms = builtinAlgorithms();
   for (const std::string& file : plugins) {
@@ -249,7 +269,7 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
 void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds) {
   if (!plugins.empty()) guardEngines(limit_seconds);
   for (const std::string& file : plugins) {
-    if (isPairLog(file) || isExternal(file)) continue;
+    if (!isLibrary(file)) continue;
     const auto* plugin =
         exportOf<scenes::EngineEntry>(load(file), file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;

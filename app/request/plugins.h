@@ -21,6 +21,13 @@ struct SdkPlugin {
 /// All SDK plug-ins, built or not.
 std::vector<SdkPlugin> sdkPlugins();
 
+// What stands before the argument of --plugin that is no library.
+inline constexpr char kPairLogPrefix[] = "pairs:";      ///< logged_pairs.h: a file
+inline constexpr char kExternalPrefix[] = "external:";  ///< external_program.h: a shell command
+
+/// Whether a plug-in has no such prefix.
+bool isLibrary(const std::string& plugin);
+
 /// Returns the built-in algorithms, then those of these libraries (see broadmark/plugin.h and
 /// broadmark_plugin.h), which stay loaded until the program ends, of pair logs ("pairs:FILE") and
 /// of external programs ("external:COMMAND").

@@ -1,9 +1,15 @@
 #include "broadmark/error.h"
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <new>
 
 namespace broadmark {
+
+std::runtime_error systemError(const char* what) {
+  return std::runtime_error(std::string(what) + ": " + std::strerror(errno));
+}
 
 std::string currentErrorText() {
   try {

@@ -6,20 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 
 #include "broadmark/error.h"
 
 namespace broadmark {
-namespace {
-
-std::runtime_error systemError(const char* what) {
-  return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
-}
-
-}  // namespace
-
 SharedMemory::SharedMemory() : file_(::memfd_create("broadmark", MFD_CLOEXEC)) {
   if (file_.get() < 0) throw systemError("no shared memory");
 }

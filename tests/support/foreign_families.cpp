@@ -3,15 +3,17 @@
 
 #include <dlfcn.h>
 
+#include <cstring>
 #include <stdexcept>
 
 #include "request/c_plugin.h"
 #include "request/external_program.h"
+#include "request/plugins.h"
 
 namespace broadmark {
 
 static std::vector<Algorithm> load(const char* file) {
-  if (isExternal(file)) return {externalAlgorithm(file)};
+  if (!isLibrary(file)) return {externalAlgorithm(file + std::strlen(kExternalPrefix))};
   void* const library = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(::dlerror());
   const auto table =

@@ -181,16 +181,17 @@ void OpenedResults::updateList() {
   }
   if (sorted_by_ == nullptr) return;
   std::vector<ColumnValue> values;
+  const ColumnValue unknown;
   for (const Row& row : rows_) {
+    // Self-checks find no pairs: their times are no rivals.
+    if (sorted_by_->unit == ColumnUnit::seconds && isSelfCheck(row.result)) {
+      values.push_back(unknown);
+      continue;
+    }
     values.push_back(sorted_by_->shown.order
                          ? sorted_by_->shown.order(row.result)
                          : sorted_by_->shownValueOf(row.result, row.summary.value_or(Summary{})));
   }
-  // Self-checks find no pairs: their times are no rivals.
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (sorted_by_->unit == ColumnUnit::seconds && isSelfCheck(rows_[i].result)) values[i] = {};
-  }
-  const ColumnValue unknown;
   std::ranges::stable_sort(listed_, [&](std::size_t a, std::size_t b) {
     if (values[a] == unknown || values[b] == unknown)
       return values[b] == unknown && values[a] != unknown;

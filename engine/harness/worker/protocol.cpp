@@ -6,7 +6,6 @@
 #include <sys/socket.h>
 
 #include <cerrno>
-#include <cstring>
 #include <type_traits>
 
 namespace broadmark::worker {
@@ -22,10 +21,6 @@ static_assert(std::is_trivially_copyable_v<BodyGroups> && std::is_trivially_copy
 
 /// Longer than any message; longer ones would be truncated.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 17;
-
-std::runtime_error systemError(const char* what) {
-  return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
-}
 
 }  // namespace
 

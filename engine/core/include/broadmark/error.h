@@ -38,6 +38,9 @@ class HardLimitError : public std::runtime_error {
 /// Thrown when the user cancels long work. Not a std::exception, since it is no error.
 struct Cancelled {};
 
+/// An error with the reason why a system call has just failed: "no pipe: Too many open files".
+std::runtime_error systemError(const char* what);
+
 /// The message of the exception being handled. Only inside a catch block.
 std::string currentErrorText();
 
