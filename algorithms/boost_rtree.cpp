@@ -21,6 +21,7 @@
 
 #define BOOST_ALLOW_DEPRECATED_HEADERS  // suppresses Boost's own notes
 #include <boost/geometry/algorithms/covered_by.hpp>
+#include <boost/geometry/algorithms/distance.hpp>  // for nearest(), in Boost 1.83
 #include <boost/geometry/core/cs.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
