@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import functools
 import pathlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from broadmark.palette import light
 
 #: The time per frame up to which larger sizes are shown.
 CAP_SECONDS = 0.5
+
+#: The number of threads of multi-threaded algorithms.
+THREADS = 4
 
 #: The ends of the figures' axes: thousands of objects, seconds.
 MAX_THOUSANDS, MAX_SECONDS = 1024, 0.55
@@ -43,6 +46,8 @@ class Algorithm:
     filled: bool  #: by the variant
     panel: str  #: SINGLE or PARALLEL
     line: str = "-"
+    #: The original's values of parameters that have another default here.
+    settings: dict[str, float] = field(default_factory=dict)
 
 
 SINGLE, PARALLEL = "single-threaded", "multi-threaded and GPU"
@@ -68,7 +73,7 @@ ALGORITHMS = [
     Algorithm("Tracy ST", "tracy", INDEPENDENT, "v", True, SINGLE),
     Algorithm("Tracy MT", "tracy-mt", INDEPENDENT, "v", True, PARALLEL),
     Algorithm("CGAL", "cgal", light("paper_cgal"), "p", True, SINGLE),
-    Algorithm("KD", "kd", light("paper_kd"), "d", True, SINGLE),
+    Algorithm("KD", "kd", light("paper_kd"), "d", True, SINGLE, "-", {"margin": 0.01}),
     Algorithm("GPU SAP", "b3-sap", BULLET3, "^", True, PARALLEL, "--"),
     Algorithm("GPU LBVH", "b3-lbvh", BULLET3, "s", True, PARALLEL, "--"),
     Algorithm("GPU Grid", "b3-grid", BULLET3, "o", True, PARALLEL, "--"),

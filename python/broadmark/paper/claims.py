@@ -1,8 +1,7 @@
 """The paper's claims, judged by results: a sentence and a function for each claim.
 
-A claim has parts. It does not hold if a part does not hold; otherwise it is not measured if a part is
-not measured; otherwise it holds. Numbers of the paper that "hardly change" differ by factors of up to
-1.75, so HARDLY allows 2.
+A claim has parts; its outcome is the first in the order of `Outcome` among theirs. Numbers of the paper
+that "hardly change" differ by factors of up to 1.75, so HARDLY allows 2.
 """
 
 from __future__ import annotations
@@ -11,16 +10,30 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from broadmark.paper.algorithms import ALGORITHMS, MAX_SECONDS, SINGLE, is_gpu
-from broadmark.paper.evidence import TOLERANCE, Evidence, PartVerdict
+from broadmark.paper.evidence import (
+    FASTER,
+    FIRST,
+    SLOWER,
+    TOLERANCE,
+    Evidence,
+    Outcome,
+    PartVerdict,
+    Range,
+    about,
+    between,
+)
+from broadmark.paper.times import MIN_NOISE, NOISE_OF_ONE
 
-HARDLY = 2.0
-
-HOLDS, FAILS, UNKNOWN = "holds", "does not hold", "not measured"
+HARDLY = Range(1 / 2, 2)
 
 TERMS = (
-    f"A number counts as reproduced within a factor of {TOLERANCE:g}, as hardly changed within a "
-    f"factor of {HARDLY:g}. The cap is {MAX_SECONDS:g} s per frame, the top of the paper's figures. "
-    "The figures are those at the largest size that all algorithms of a comparison reach."
+    "Comparisons are judged at every size at which all their algorithms have a time and the paper "
+    "prints more than 0.00 s. A time is known within its 95 % interval over repetitions, at least "
+    f"{100 * MIN_NOISE:g} %, and within {100 * NOISE_OF_ONE:g} % if it was measured once; where that "
+    "leaves it open whether a size fits, it is undecided; where sizes contradict each other, the "
+    f"claim is mixed. A number counts as reproduced within a factor of {TOLERANCE:g}, a range as it "
+    f"rounds, as hardly changed within a factor of {HARDLY.high:g}. The cap is {MAX_SECONDS:g} s per "
+    "frame, the top of the paper's figures."
 )
 
 SINGLES = [algorithm.name for algorithm in ALGORITHMS if algorithm.panel == SINGLE]
@@ -52,27 +65,27 @@ def next_slowest(e: Evidence) -> list[PartVerdict]:
 
 
 def tracy_threads(e: Evidence) -> list[PartVerdict]:
-    return [e.gain("Brownian", "Tracy ST", "Tracy MT", 2.2, 2.2)]
+    return [e.gain("Brownian", "Tracy ST", "Tracy MT", about(2.2))]
 
 
 def grids(e: Evidence) -> list[PartVerdict]:
     bf, sap = ("Grid BF ST", "Grid BF MT"), ("Grid SAP ST", "Grid SAP MT")
     return [
         *(part for i in (0, 1) for part in e.faster("Brownian", [sap[i]], [bf[i]])),
-        *(e.gain("Brownian", *grid, 2, 3, also=[*bf, *sap]) for grid in (bf, sap)),
+        *(e.gain("Brownian", *grid, between(2, 3)) for grid in (bf, sap)),
     ]
 
 
 def kd_like_grid_sap(e: Evidence) -> list[PartVerdict]:
-    return [e.gain("Brownian", "Grid SAP ST", "KD", 1, 1)]
+    return [e.gain("Brownian", "Grid SAP ST", "KD", about(1))]
 
 
 def gpu_fastest(e: Evidence) -> list[PartVerdict]:
     names = [algorithm.name for algorithm in ALGORITHMS]
     return [
         *e.faster("Brownian", FASTEST, _without(names, FASTEST)),
-        *(e.gain("Brownian", "Grid SAP MT", name, 2, 2) for name in FASTEST),
-        *(e.gain("Brownian", "KD", name, 3, 3) for name in FASTEST),
+        *(e.gain("Brownian", "Grid SAP MT", name, about(2)) for name in FASTEST),
+        *(e.gain("Brownian", "KD", name, about(3)) for name in FASTEST),
     ]
 
 
@@ -81,9 +94,9 @@ def free_fall_favours(e: Evidence) -> list[PartVerdict]:
     lose = ["Grid BF ST", "Grid SAP ST", "CGAL", "DBVT D"]
     same = [*SLOWEST, *GPUS]
     return [
-        *(e.changes("FreeFall", name, 0, 1) for name in gain),
-        *(e.changes("FreeFall", name, 1, float("inf")) for name in lose),
-        *(e.changes("FreeFall", name, 1 / HARDLY, HARDLY) for name in same),
+        *(e.changes("FreeFall", name, FASTER) for name in gain),
+        *(e.changes("FreeFall", name, SLOWER) for name in lose),
+        *(e.changes("FreeFall", name, HARDLY) for name in same),
     ]
 
 
@@ -97,7 +110,7 @@ def free_fall_a_million(e: Evidence) -> list[PartVerdict]:
 def gravity_hardest(e: Evidence) -> list[PartVerdict]:
     return [
         *(e.reaches_a_million("Gravity", name, False) for name in ON_CPU),
-        *(e.changes("Gravity", name, 1 / HARDLY, HARDLY) for name in FASTEST),
+        *(e.changes("Gravity", name, HARDLY) for name in FASTEST),
     ]
 
 
@@ -111,8 +124,12 @@ def extra_pairs(e: Evidence) -> list[PartVerdict]:
 
 def assorted_objects(e: Evidence) -> list[PartVerdict]:
     return [
-        *(part for name in ("DBVT F", "DBVT D") for part in e.assorted_takes(name, 2, 3)),
-        *(part for name in ("KD", "Tracy ST", "CGAL") for part in e.assorted_takes(name, 1.2, 1.4)),
+        *(part for name in ("DBVT F", "DBVT D") for part in e.assorted_takes(name, between(2, 3))),
+        *(
+            part
+            for name in ("KD", "Tracy ST", "CGAL")
+            for part in e.assorted_takes(name, between(1.2, 1.4, 1))
+        ),
     ]
 
 
@@ -173,7 +190,7 @@ class Judgement:
 
     number: int
     claim: str
-    verdict: str
+    verdict: Outcome
     parts: list[PartVerdict]
 
 
@@ -182,7 +199,6 @@ def judge(evidence: Evidence) -> list[Judgement]:
     judgements = []
     for number, claim in enumerate(CLAIMS, 1):
         parts = claim.parts(evidence)
-        outcomes = [part.holds for part in parts]
-        verdict = FAILS if False in outcomes else UNKNOWN if None in outcomes else HOLDS
+        verdict = min((part.outcome for part in parts), key=FIRST.index)
         judgements.append(Judgement(number, claim.sentence, verdict, parts))
     return judgements

@@ -1,29 +1,110 @@
 """Judges the parts of the paper's claims by results: comparisons, ratios, limits.
 
-A part is judged at the largest size at which all its algorithms have a time. Results of GPU algorithms
-on a CPU are no evidence about GPUs: such parts are not measured.
+A comparison is judged at every size at which all its algorithms have a time, by the 95 % interval of its
+ratio. No evidence are sizes at which the paper prints 0.00 s for one of them, GPU algorithms on a CPU,
+and algorithms with another number of threads or another setting than the paper's.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import enum
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-from broadmark.paper.algorithms import BY_NAME, MAX_SECONDS, SCENES, is_gpu
+from broadmark.paper.algorithms import (
+    BY_NAME,
+    MAX_SECONDS,
+    PARALLEL,
+    SCENES,
+    THREADS,
+    is_gpu,
+    table2,
+)
 from broadmark.paper.times import Measurement, Times
 
-#: A number counts as reproduced within this factor.
+#: A single number counts as reproduced within this factor.
 TOLERANCE = 1.25
 
 MILLION = 1_000_000
 
 
+class Outcome(str, enum.Enum):
+    """The outcome of a claim is the first of these among its parts."""
+
+    FAILS = "does not hold"
+    MIXED = "mixed"
+    UNDECIDED = "undecided"
+    INCOMPARABLE = "not comparable"
+    UNMEASURED = "not measured"
+    HOLDS = "holds"
+
+
+FIRST = list(Outcome)
+
+
 @dataclass(frozen=True)
 class PartVerdict:
-    """The verdict on a part of a claim. `holds` is None if the part is not measured."""
+    """The verdict on a part of a claim."""
 
-    holds: bool | None
+    outcome: Outcome
     subject: str
-    figures: str  #: or the reason why it is not measured
+    figures: str  #: or the reason why there is no evidence
+
+
+@dataclass(frozen=True)
+class Range:
+    """The ratios with which a claim holds."""
+
+    low: float
+    high: float
+
+
+FASTER = Range(0, 1)
+SLOWER = Range(1, math.inf)
+
+
+def about(number: float) -> Range:
+    """A single number, within the tolerance, but never across 1."""
+    low, high = number / TOLERANCE, number * TOLERANCE
+    return Range(max(low, 1) if number > 1 else low, high)
+
+
+def between(low: float, high: float, decimals: int = 0) -> Range:
+    """A range as printed with `decimals` decimals: 2 to 3 is 1.5 to 3.5."""
+    rounding = 0.5 * 10**-decimals
+    return Range(low - rounding, high + rounding)
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A ratio of times at a size with the half width of its 95 % interval, in logarithms."""
+
+    objects: int
+    value: float
+    noise: float
+
+    def outcome(self, expected: Range) -> Outcome:
+        """Whether the interval is inside the range, outside, or on a limit."""
+        low, high = self.value * math.exp(-self.noise), self.value * math.exp(self.noise)
+        if expected.low <= low and high <= expected.high:
+            return Outcome.HOLDS
+        if high < expected.low or low > expected.high:
+            return Outcome.FAILS
+        return Outcome.UNDECIDED
+
+
+def _ratio(objects: int, above: Measurement, below: Measurement) -> Ratio:
+    assert above.seconds and below.seconds
+    return Ratio(objects, above.seconds / below.seconds, math.hypot(above.noise, below.noise))
+
+
+def _over_sizes(outcomes: Sequence[Outcome]) -> Outcome:
+    """Decided sizes that agree outvote undecided ones."""
+    decided = set(outcomes) - {Outcome.UNDECIDED}
+    if not decided:
+        return Outcome.UNDECIDED
+    return decided.pop() if len(decided) == 1 else Outcome.MIXED
 
 
 @dataclass(frozen=True)
@@ -33,19 +114,20 @@ class Evidence:
     cubes: Times
     assorted: Times
 
-    def common(self, scene: str, *names: str) -> list[tuple[int, list[float]]]:
-        """The sizes at which all algorithms have a time, the largest first, with the times."""
+    def common(self, scene: str, *names: str) -> list[tuple[int, list[Measurement]]]:
+        """The sizes at which all algorithms have a time that counts as evidence, with the times."""
         found = []
-        for objects in reversed(self.cubes.sizes(scene)):
-            measurements = [self._measurement(self.cubes, scene, objects, name) for name in names]
-            times = [
-                measurement.seconds
-                for measurement in measurements
-                if measurement and measurement.seconds is not None
-            ]
-            if len(times) == len(names):
-                found.append((objects, times))
+        for objects in self.cubes.sizes(scene):
+            times = [self._measurement(self.cubes, scene, objects, name) for name in names]
+            known = [time for time in times if time and time.seconds]
+            rounded = any(table2().get((scene, objects, BY_NAME[name].id)) == 0 for name in names)
+            if len(known) == len(names) and not rounded:
+                found.append((objects, known))
         return found
+
+    def ratios(self, scene: str, above: str, below: str) -> list[Ratio]:
+        """The time of `above` over that of `below`, by size."""
+        return [_ratio(n, first, second) for n, (first, second) in self.common(scene, above, below)]
 
     def _measurement(self, times: Times, scene: str, objects: int, name: str) -> Measurement | None:
         if self._lacks_gpu(name):
@@ -60,96 +142,107 @@ class Evidence:
         lacking = [name for name in names if self._lacks_gpu(name)]
         if lacking:
             why = f"there is no GPU: the OpenCL device is {self.cubes.device}"
-            return PartVerdict(None, ", ".join(lacking), why)
+            return PartVerdict(Outcome.UNMEASURED, ", ".join(lacking), why)
         sizes = self.cubes.sizes(scene)
         never = [
             n for n in names if not any(self._measurement(self.cubes, scene, s, n) for s in sizes)
         ]
         where = TITLES[scene]
         if never:
-            return PartVerdict(None, ", ".join(never), f"not in these results of {where}")
-        return PartVerdict(None, ", ".join(names), f"no size of {where} at which all have a time")
+            why = f"not in these results of {where}"
+            return PartVerdict(Outcome.UNMEASURED, ", ".join(never), why)
+        why = f"no size of {where} at which all have a time and the paper prints more than 0.00 s"
+        return PartVerdict(Outcome.UNMEASURED, ", ".join(names), why)
+
+    def _judged(
+        self, subject: str, figures: str, ratios: list[Ratio], expected: Range, *names: str
+    ) -> PartVerdict:
+        """The verdict over all sizes. `figures` has "{}" in place of the ratios."""
+        outcomes = [ratio.outcome(expected) for ratio in ratios]
+        outcome = _over_sizes(outcomes)
+        values = [_number(value) for value in sorted(ratio.value for ratio in ratios)]
+        text = values[0] if values[0] == values[-1] else f"{values[0]} to {values[-1]}"
+        text = f"{figures.format(text)} {_sizes([ratio.objects for ratio in ratios])}"
+        details = []
+        for kind in (Outcome.HOLDS, Outcome.FAILS, Outcome.UNDECIDED):
+            of_kind = [r.objects for r, found in zip(ratios, outcomes) if found == kind]
+            if of_kind and len(of_kind) < len(ratios):
+                details.append(f"{kind.value} {_sizes(of_kind)}")
+        if details:
+            text += ": " + ", ".join(details)
+        return self._comparable(PartVerdict(outcome, subject, text), *names)
+
+    def _comparable(self, verdict: PartVerdict, *names: str) -> PartVerdict:
+        """The verdict, or "not comparable" if an algorithm ran with other threads than the paper's."""
+        threads = {
+            self.cubes.threads_of(BY_NAME[name].id)
+            for name in names
+            if BY_NAME[name].panel == PARALLEL and not is_gpu(BY_NAME[name])
+        } - {THREADS}
+        if not threads:
+            return verdict
+        figures = f"{verdict.figures}; {max(threads)} threads, the paper’s {THREADS}"
+        return replace(verdict, outcome=Outcome.INCOMPARABLE, figures=figures)
 
     # The parts of claims.
 
     def faster(self, scene: str, fast: list[str], slow: list[str]) -> list[PartVerdict]:
-        """Each of `fast` takes less time than each of `slow`."""
-        pairs = [(faster, slower) for faster in fast for slower in slow]
+        """Each of `fast` takes less time than each of `slow`: a part for each pair that does not
+        hold, or one for all."""
         parts: list[PartVerdict] = []
         missing: list[str] = []
-        for faster, slower in pairs:
-            found = self.common(scene, faster, slower)
-            if not found:
-                missing += [name for name in (faster, slower) if name not in missing]
-            elif found[0][1][0] >= found[0][1][1]:
-                objects, (first, second) = found[0]
-                figures = f"{_seconds(first)}, {slower} {_seconds(second)}"
-                parts.append(PartVerdict(False, faster, f"{figures} {_at(scene, objects)}"))
+        for faster in fast:
+            for slower in slow:
+                ratios = self.ratios(scene, faster, slower)
+                if ratios:
+                    figures = f"takes {{}} of {slower}’s time in {TITLES[scene]}"
+                    parts.append(self._judged(faster, figures, ratios, FASTER, faster, slower))
+                else:
+                    missing += [name for name in (faster, slower) if name not in missing]
+        others = [part for part in parts if part.outcome != Outcome.HOLDS]
         if missing:
-            parts.append(self.missing(scene, *missing))
-        if not parts:
-            parts.append(
-                PartVerdict(True, _and(fast), f"faster than {_and(slow)} in {TITLES[scene]}")
-            )
-        return parts
+            others.append(self.missing(scene, *missing))
+        if others or len(parts) == 1:
+            return others or parts
+        figures = f"faster than {_and(slow)} in {TITLES[scene]}"
+        return [PartVerdict(Outcome.HOLDS, _and(fast), figures)]
 
-    def gain(
-        self,
-        scene: str,
-        slow: str,
-        fast: str,
-        low: float,
-        high: float,
-        also: list[str] | None = None,
-    ) -> PartVerdict:
-        """`fast` is `low` to `high` times as fast as `slow`, at a size where `also` have times."""
-        for objects, (first, second, *_) in self.common(scene, slow, fast, *(also or [])):
-            if min(first, second) > 0:  # 0: rounded
-                ratio = first / second
-                return PartVerdict(
-                    low / TOLERANCE <= ratio <= high * TOLERANCE,
-                    fast,
-                    f"{_number(ratio)} times as fast as {slow} {_at(scene, objects)}"
-                    + self._threads(scene, objects, fast),
-                )
-        return self.missing(scene, slow, fast, *(also or []))
+    def gain(self, scene: str, slow: str, fast: str, expected: Range) -> PartVerdict:
+        """`fast` is as many times as fast as `slow` as expected."""
+        ratios = self.ratios(scene, slow, fast)
+        if not ratios:
+            return self.missing(scene, slow, fast)
+        figures = f"{{}} times as fast as {slow} in {TITLES[scene]}"
+        return self._judged(fast, figures, ratios, expected, slow, fast)
 
     def gain_up_to(
         self, scene: str, slow: list[str], fast: list[str], expected: float
     ) -> PartVerdict:
         """The largest speed-up of `fast` over `slow`, over all sizes, is `expected`."""
-        ratios = [
-            (times[0] / times[1], objects, slower, faster)
+        found = [
+            (ratio.value, ratio, slower, faster)
             for slower in slow
             for faster in fast
-            for objects, times in self.common(scene, slower, faster)
-            if times[1] > 0
+            for ratio in self.ratios(scene, slower, faster)
+        ]
+        if not found:
+            return self.missing(scene, *slow, *fast)
+        _, ratio, slower, faster = max(found, key=lambda entry: entry[0])
+        figures = f"up to {{}} times as fast as {slower} in {TITLES[scene]}"
+        return self._judged(faster, figures, [ratio], about(expected), slower, faster)
+
+    def changes(self, scene: str, name: str, expected: Range) -> PartVerdict:
+        """The time in `scene` over the time in Brownian is as expected."""
+        times = dict(self.common(scene, name))
+        ratios = [
+            _ratio(objects, times[objects][0], brownian)
+            for objects, (brownian,) in self.common("Brownian", name)
+            if objects in times
         ]
         if not ratios:
-            return self.missing(scene, *slow, *fast)
-        ratio, objects, slower, faster = max(ratios)
-        return PartVerdict(
-            expected / TOLERANCE <= ratio <= expected * TOLERANCE,
-            faster,
-            f"up to {_number(ratio)} times as fast as {slower} {_at(scene, objects)}"
-            + self._threads(scene, objects, faster),
-        )
-
-    def _threads(self, scene: str, objects: int, name: str) -> str:
-        measurement = self._measurement(self.cubes, scene, objects, name)
-        return (
-            f" ({measurement.threads} threads)" if measurement and measurement.threads > 1 else ""
-        )
-
-    def changes(self, scene: str, name: str, low: float, high: float) -> PartVerdict:
-        """The time in `scene` is `low` to `high` (both exclusive) times the time in Brownian."""
-        scene_times = dict(self.common(scene, name))
-        for objects, (brownian,) in self.common("Brownian", name):
-            if objects in scene_times and brownian > 0:
-                ratio = scene_times[objects][0] / brownian
-                figures = f"{_number(ratio)} times its time in Brownian {_at(scene, objects)}"
-                return PartVerdict(low < ratio < high, name, figures)
-        return self.missing(scene, name)
+            return self.missing(scene, name)
+        figures = f"{{}} times its time in Brownian in {TITLES[scene]}"
+        return self._judged(name, figures, ratios, expected, name)
 
     def reaches_a_million(self, scene: str, name: str, expected: bool) -> PartVerdict:
         """Whether the algorithm stays within the cap up to a million objects, as `expected`."""
@@ -159,65 +252,80 @@ class Evidence:
                 continue
             seconds = measurement.seconds
             if seconds is not None and seconds <= MAX_SECONDS and objects >= MILLION:
-                return PartVerdict(expected, name, f"{_seconds(seconds)} {_at(scene, objects)}")
-            if measurement.exceeds_cap:
+                figures, reached = f"{_seconds(seconds)} {_sizes([objects])}", True
+            elif measurement.exceeds_cap:
                 time = "timeout" if seconds is None else _seconds(seconds)
-                return PartVerdict(
-                    not expected, name, f"past the cap: {time} {_at(scene, objects)}"
-                )
-            break
+                figures, reached = f"past the cap: {time} {_sizes([objects])}", False
+            else:
+                break
+            outcome = Outcome.HOLDS if reached == expected else Outcome.FAILS
+            verdict = PartVerdict(outcome, name, f"{figures} in {TITLES[scene]}")
+            return self._comparable(verdict, name)
         why = f"neither a million objects in {TITLES[scene]} nor past the cap before"
-        return PartVerdict(None, name, why)
+        return PartVerdict(Outcome.UNMEASURED, name, why)
 
     def fails_above(self, name: str, limit: int) -> PartVerdict:
         """The algorithm fails with more than `limit` objects."""
+        if self._lacks_gpu(name):
+            return self.missing("Brownian", name)
         above = [
             (objects, measurement.status)
             for (_, objects, id_), measurement in sorted(self.cubes.measurements.items())
             if id_ == BY_NAME[name].id and objects > limit and measurement.status != "timeout"
         ]
         if not above:
-            return PartVerdict(None, name, f"no case of more than {limit:,} objects")
+            why = f"no case of more than {limit:,} objects"
+            return PartVerdict(Outcome.UNMEASURED, name, why)
         objects, status = min(above, key=lambda case: case[1] != "ok")
-        return PartVerdict(status != "ok", name, f"{status} at {objects:,}")
+        outcome = Outcome.FAILS if status == "ok" else Outcome.HOLDS
+        return PartVerdict(outcome, name, f"{status} at {objects:,}")
 
     def extra_pairs(self, name: str, share: float) -> PartVerdict:
         """The algorithm reports non-overlapping pairs, `share` of the number of overlapping pairs."""
+        algorithm = BY_NAME[name]
+        cases = self.cubes.original_settings if algorithm.settings else self.cubes.measurements
         shares = [
             measurement.extra_share
-            for (_, _, id_), measurement in self.cubes.measurements.items()
-            if id_ == BY_NAME[name].id
+            for (_, _, id_), measurement in cases.items()
+            if id_ == algorithm.id
             and measurement.status == "ok"
             and measurement.extra_share is not None
         ]
+        if not shares and algorithm.settings:
+            settings = ", ".join(f"{key} {value:g}" for key, value in algorithm.settings.items())
+            why = f"no checked case with the original’s {settings}"
+            return PartVerdict(Outcome.INCOMPARABLE, name, why)
         if not shares:
-            return PartVerdict(None, name, "no case with checked answers")
-        mean = sum(shares) / len(shares)
-        fits = share / TOLERANCE <= mean <= share * TOLERANCE
-        return PartVerdict(fits, name, f"{100 * mean:.1f} % more, mean of {len(shares)} cases")
+            return PartVerdict(Outcome.UNMEASURED, name, "no case with checked answers")
+        mean, expected = sum(shares) / len(shares), about(share)
+        outcome = Outcome.HOLDS if expected.low <= mean <= expected.high else Outcome.FAILS
+        figures = f"{100 * mean:.1f} % more, mean of {len(shares)} cases"
+        return PartVerdict(outcome, name, figures)
 
-    def assorted_takes(self, name: str, low: float, high: float) -> list[PartVerdict]:
-        """Assorted objects take `low` to `high` times as long as cubes."""
+    def assorted_takes(self, name: str, expected: Range) -> list[PartVerdict]:
+        """Assorted objects take longer than cubes, by a factor as expected."""
         parts = []
-        for scene in TITLES:
-            for objects, (cubes,) in self.common(scene, name):
-                measurement = self._measurement(self.assorted, scene, objects, name)
-                if measurement and measurement.seconds and cubes > 0:
-                    ratio = measurement.seconds / cubes
-                    fits = low / TOLERANCE <= ratio <= high * TOLERANCE
-                    figures = f"{_number(ratio)} times as long {_at(scene, objects)}"
-                    parts.append(PartVerdict(fits, name, figures))
-                    break
-        return parts or [
-            PartVerdict(None, name, "no results of equally many assorted objects and cubes")
-        ]
+        for scene, title in TITLES.items():
+            ratios = []
+            for objects in self.cubes.sizes(scene):
+                cubes = self._measurement(self.cubes, scene, objects, name)
+                assorted = self._measurement(self.assorted, scene, objects, name)
+                if cubes and cubes.seconds and assorted and assorted.seconds:
+                    ratios.append(_ratio(objects, assorted, cubes))
+            if ratios:
+                figures = f"{{}} times as long in {title}"
+                parts.append(self._judged(name, figures, ratios, expected, name))
+        why = "no results of equally many assorted objects and cubes"
+        return parts or [PartVerdict(Outcome.UNMEASURED, name, why)]
 
 
 TITLES = {scene.name: scene.title for scene in SCENES}
 
 
-def _at(scene: str, objects: int) -> str:
-    return f"at {objects:,} in {TITLES[scene]}"
+def _sizes(objects: list[int]) -> str:
+    if len(objects) <= 3:
+        return "at " + ", ".join(f"{n:,}" for n in sorted(objects))
+    return f"at {len(objects)} sizes from {min(objects):,} to {max(objects):,}"
 
 
 def _seconds(seconds: float) -> str:

@@ -2,6 +2,7 @@
 
 The table is transposed, because there are more algorithms than in the paper: a block per scene, a row
 per algorithm, and for each number of objects our seconds per frame and the paper's. A second block has
+our medians with the 95 % interval of the mean, and marks means that a few spikes dominate. A third has
 the ratios to CGAL's time: both use the same CGAL library, so these ratios are comparable between
 machines. The paper's times are rounded to 0.01 s, so ratios of short times are left out.
 """
@@ -14,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from broadmark.paper.algorithms import BY_ID, CAP_SECONDS, SCENES, Scene, table2
-from broadmark.paper.times import Times
+from broadmark.paper.times import SPIKE_FACTOR, SPIKE_WINDOW, Times
 
 REFERENCE = "cgal"
 
@@ -22,6 +23,10 @@ REFERENCE = "cgal"
 MIN_REFERENCE_SECONDS, MIN_OTHER_SECONDS = 0.05, 0.02
 
 PAST_THE_CAP = "–"
+
+#: The share of spikes in a mean from which it is marked.
+MAX_SPIKE_SHARE = 0.05
+SPIKES = "!"
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,14 @@ class Entry:
     paper_seconds: float | None
     ratio: float | None  #: to CGAL's time
     paper_ratio: float | None
+    median: float | None
+    noise: float | None  #: half of the mean's 95 % interval, relative to it; None: measured once
+    spike_share: float | None
+
+    @property
+    def mark(self) -> str:
+        """A mark for a mean that spikes dominate."""
+        return SPIKES if (self.spike_share or 0) > MAX_SPIKE_SHARE else ""
 
 
 def entries(times: Times, scene: str) -> list[list[Entry]]:
@@ -62,6 +75,9 @@ def _entry(times: Times, scene: str, objects: int, algorithm: str) -> Entry:
         paper_seconds,
         seconds / reference.seconds if seconds and reference and reference.seconds else None,
         None if paper_seconds is None or rounded else paper_seconds / paper_reference,
+        measurement.median if measurement and seconds else None,
+        measurement.noise if measurement and seconds and measurement.repeated else None,
+        measurement.spike_share if measurement and seconds else None,
     )
 
 
@@ -91,6 +107,8 @@ def _page(times: Times) -> Page:
     notes = [
         f"“{PAST_THE_CAP}”: exceeded {CAP_SECONDS} s per frame at a smaller size. A word is the "
         "status of our case. A blank cell was not measured.",
+        f"“{SPIKES}”: more than {100 * MAX_SPIKE_SHARE:g} % of the mean are frames that take over "
+        f"{SPIKE_FACTOR} times as long as the median of the {SPIKE_WINDOW} around them.",
     ]
     notes += [f"{line}." for line in times.conditions]
     page = Page(times.machine, notes)
@@ -108,17 +126,23 @@ def _grids(times: Times, scene: Scene) -> list[Grid]:
         for entry in rows[0]
     ]
 
-    def grid(title: str, ours: Callable[[Entry], str], paper: Callable[[Entry], str]) -> Grid:
+    def grid(
+        title: str, ours: Callable[[Entry], str], paper: Callable[[Entry], str] | None = None
+    ) -> Grid:
         lines = []
         for row in rows:
             cells = []
             for entry, (_, kinds) in zip(row, columns):
-                cells += [ours(entry), paper(entry)][: len(kinds)]
+                cells += [ours(entry), paper(entry)][: len(kinds)] if paper else [ours(entry)]
             name = BY_ID[row[0].algorithm].name if row[0].algorithm in BY_ID else ""
             lines.append((name, row[0].algorithm, cells))
-        return Grid(f"{scene.title}: {title}", columns, lines)
+        all_columns = columns if paper else [(objects, ["ours"]) for objects, _ in columns]
+        return Grid(f"{scene.title}: {title}", all_columns, lines)
 
-    blocks = [grid("seconds per frame", _seconds, _paper_seconds)]
+    blocks = [
+        grid("seconds per frame", _seconds, _paper_seconds),
+        grid("median of the frames, ± of the mean", _median),
+    ]
     if any(entry.ratio or entry.paper_ratio for row in rows for entry in row):
         blocks.append(
             grid("times CGAL’s", lambda e: _ratio(e.ratio), lambda e: _ratio(e.paper_ratio))
@@ -131,7 +155,14 @@ def _has_result(row: list[Entry]) -> bool:
 
 
 def _seconds(entry: Entry) -> str:
-    return entry.status if entry.seconds is None else _two_digits(entry.seconds, 2)
+    return entry.status if entry.seconds is None else _two_digits(entry.seconds, 2) + entry.mark
+
+
+def _median(entry: Entry) -> str:
+    if entry.median is None:
+        return ""
+    interval = "" if entry.noise is None else f" ±{100 * entry.noise:.0f} %"
+    return _two_digits(entry.median, 2) + interval
 
 
 def _paper_seconds(entry: Entry) -> str:
@@ -243,6 +274,7 @@ def _escaped_latex(text: str) -> str:
 CSV_COLUMNS = [
     *("machine", "scene", "objects", "algorithm", "paper_algorithm", "status"),
     *("seconds_per_frame", "paper_seconds_per_frame", "ratio_to_cgal", "paper_ratio_to_cgal"),
+    *("median_seconds", "relative_interval", "spike_share"),
 ]
 
 
@@ -265,6 +297,7 @@ def _csv_row(machine: str, entry: Entry) -> list[object]:
     return [
         *(machine, entry.scene, entry.objects, entry.algorithm, name, status),
         *(entry.seconds, entry.paper_seconds, entry.ratio, entry.paper_ratio),
+        *(entry.median, entry.noise, entry.spike_share),
     ]
 
 

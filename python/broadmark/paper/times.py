@@ -1,23 +1,30 @@
 """Our times by the paper's scenes, numbers of objects and algorithms, one case each.
 
 Among several numbers of threads and instruction sets, the case with the most threads and then the
-widest instruction set is used. Only a complete case without wrong answers has a time; others have
+widest instruction set is used; cases with parameters, where there is none without. Only a complete case without wrong answers has a time; others have
 their status.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import pandas as pd
 
 from broadmark.errors import InputError
-from broadmark.paper.algorithms import ALGORITHMS, CAP_SECONDS, SCENES
+from broadmark.paper.algorithms import ALGORITHMS, BY_ID, CAP_SECONDS, SCENES
 from broadmark.results import Results, commit_name
-from broadmark.selection import best_variants, by_machine
+from broadmark.selection import RECORDING, best_variants, by_machine
 
 SCENE_NAMES = [scene.name for scene in SCENES]
 SELF_CHECK_FAMILY = "self-check"
+
+#: Half the width of a time's 95 % interval, relative to it: at least, and if it was measured once.
+MIN_NOISE, NOISE_OF_ONE = 0.02, 0.1
+
+#: A frame is a spike if it takes this many times as long as the median frame around it.
+SPIKE_FACTOR, SPIKE_WINDOW = 3, 11
 
 
 @dataclass(frozen=True)
@@ -29,6 +36,10 @@ class Measurement:
     threads: int
     limit: float  #: the time limit in seconds per frame
     extra_share: float | None  #: false pairs per overlapping pair; None: unknown
+    noise: float  #: half the width of the 95 % interval of `seconds`, relative to it
+    repeated: bool  #: so that the interval was measured
+    median: float  #: seconds
+    spike_share: float  #: of the time, that spikes take longer than the frames around them
 
     @property
     def exceeds_cap(self) -> bool:
@@ -65,19 +76,44 @@ class Times:
         )
         self.measurements: dict[tuple[str, int, str], Measurement] = {}
         self.families: dict[str, str] = {}  #: by algorithm
-        for number, row in best_variants(cases[mask]).iterrows():
-            conditions = results.details[number].get("conditions", {})
-            status = row["status"] if row["complete"] else "incomplete"
-            extra = float("nan") if row["allowed_extra"] is None else row["allowed_extra"]
-            extra /= row["frames"]
-            self.measurements[row["scene"], row["objects"], row["algorithm"]] = Measurement(
-                status,
-                row["seconds_per_frame"] if status == "ok" else None,
-                row["threads"],
-                conditions.get("frame_limit_seconds") or CAP_SECONDS,
-                None if pd.isna(extra) else extra / max(row["pairs_mean"] - extra, 1),
-            )
+        cases = cases[mask]
+        #: Cases with the settings of the paper's original that are no defaults here.
+        self.original_settings = {
+            self._cell(row): self._measurement(row, results.details[number])
+            for number, row in cases.iterrows()
+            if row["algorithm"] in BY_ID
+            and BY_ID[row["algorithm"]].settings
+            and results.details[number]["params"] == BY_ID[row["algorithm"]].settings
+        }
+        plain = cases["params"] == ""
+        has_plain = plain.groupby([cases[key] for key in [*RECORDING, "algorithm"]]).transform(
+            "any"
+        )
+        for number, row in best_variants(cases[plain | ~has_plain]).iterrows():
+            self.measurements[self._cell(row)] = self._measurement(row, results.details[number])
             self.families[row["algorithm"]] = row["family"]
+
+    @staticmethod
+    def _cell(row: pd.Series) -> tuple[str, int, str]:
+        return row["scene"], row["objects"], row["algorithm"]
+
+    @staticmethod
+    def _measurement(row: pd.Series, details: dict[str, Any]) -> Measurement:
+        status = row["status"] if row["complete"] else "incomplete"
+        extra = row["allowed_extra"] / row["frames"]
+        seconds, repeated = row["seconds_per_frame"], not pd.isna(row["ci95_low_seconds"])
+        half_width = (row["ci95_high_seconds"] - row["ci95_low_seconds"]) / 2
+        return Measurement(
+            status,
+            seconds if status == "ok" else None,
+            row["threads"],
+            details.get("conditions", {}).get("frame_limit_seconds") or CAP_SECONDS,
+            None if pd.isna(extra) else extra / max(row["pairs_mean"] - extra, 1),
+            max(half_width / seconds if seconds else 0, MIN_NOISE) if repeated else NOISE_OF_ONE,
+            repeated,
+            row["median_seconds"],
+            _spike_share(details["frames"]["total"]),
+        )
 
     @property
     def other_algorithms(self) -> list[str]:
@@ -99,12 +135,17 @@ class Times:
                     break
         return measurements
 
+    def threads_of(self, algorithm: str) -> int:
+        """The most threads of an algorithm; 0 without a result."""
+        return max(
+            (p.threads for (_, _, id_), p in self.measurements.items() if id_ == algorithm),
+            default=0,
+        )
+
     def is_parallel(self, algorithm: str) -> bool:
         """Whether the algorithm uses several threads or a device, by its name and results."""
         return (
-            algorithm.endswith("-mt")
-            or self.on_device(algorithm)
-            or any(p.threads > 1 for (_, _, a), p in self.measurements.items() if a == algorithm)
+            algorithm.endswith("-mt") or self.on_device(algorithm) or self.threads_of(algorithm) > 1
         )
 
     def on_device(self, algorithm: str) -> bool:
@@ -130,6 +171,16 @@ class Times:
             return ""
         name, _, about = self.devices[0].partition(" (")
         return name + (" (a CPU)" if ", CPU," in about else "")
+
+
+def _spike_share(repetitions: list[Any]) -> float:
+    total = excess = 0.0
+    for repetition in repetitions:
+        frames = pd.Series(repetition, dtype=float)
+        around = frames.rolling(SPIKE_WINDOW, center=True, min_periods=1).median()
+        excess += (frames - around)[frames > SPIKE_FACTOR * around].sum()
+        total += frames.sum()
+    return excess / total if total else 0.0
 
 
 def times_by_machine(results: Results) -> list[Times]:

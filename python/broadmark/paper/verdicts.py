@@ -8,10 +8,17 @@ import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from broadmark.paper.claims import FAILS, HOLDS, TERMS, UNKNOWN, Judgement
-from broadmark.paper.evidence import PartVerdict
+from broadmark.paper.claims import TERMS, Judgement
+from broadmark.paper.evidence import FIRST, Outcome, PartVerdict
 
-MARKS = {True: "+", False: "–", None: "?"}
+MARKS = {
+    Outcome.FAILS: "–",
+    Outcome.MIXED: "±",
+    Outcome.UNDECIDED: "~",
+    Outcome.INCOMPARABLE: "≠",
+    Outcome.UNMEASURED: "?",
+    Outcome.HOLDS: "+",
+}
 WIDTH = 100
 
 
@@ -26,30 +33,34 @@ class Verdicts:
     @property
     def summary(self) -> str:
         """The number of claims by verdict."""
-        verdicts = [judgement.verdict for judgement in self.judgements]
-        return ", ".join(
-            f"{verdict}: {verdicts.count(verdict)}" for verdict in (HOLDS, FAILS, UNKNOWN)
-        )
+        outcomes = [judgement.verdict for judgement in self.judgements]
+        kinds = [Outcome.HOLDS, *FIRST[:-1]]
+        return ", ".join(f"{kind.value}: {outcomes.count(kind)}" for kind in kinds)
 
 
 def _lines(parts: list[PartVerdict]) -> list[str]:
     """Failed parts first; subjects with the same figures share a line."""
-    subjects: dict[tuple[bool | None, str], list[str]] = {}
-    for part in sorted(parts, key=lambda part: [False, None, True].index(part.holds)):
-        known = subjects.setdefault((part.holds, part.figures), [])
+    subjects: dict[tuple[Outcome, str], list[str]] = {}
+    for part in sorted(parts, key=lambda part: FIRST.index(part.outcome)):
+        known = subjects.setdefault((part.outcome, part.figures), [])
         known += [name for name in part.subject.split(", ") if name not in known]
     return [
-        f"{MARKS[holds]} {', '.join(names)}{': ' if holds is None else ' '}{figures}"
-        for (holds, figures), names in subjects.items()
+        f"{MARKS[outcome]} {', '.join(names)}"
+        f"{':' if outcome == Outcome.UNMEASURED else ''} {figures}"
+        for (outcome, figures), names in subjects.items()
     ]
 
 
+def _marks() -> str:
+    return ", ".join(f"{mark} {outcome.value}" for outcome, mark in MARKS.items())
+
+
 def _as_text(all_verdicts: list[Verdicts]) -> str:
-    lines = textwrap.wrap(TERMS + " Marks: + holds, – does not hold, ? not measured.", WIDTH)
+    lines = textwrap.wrap(f"{TERMS} Marks: {_marks()}.", WIDTH)
     for verdicts in all_verdicts:
         lines += ["", "; ".join([verdicts.machine, *verdicts.conditions]), verdicts.summary]
         for judgement in verdicts.judgements:
-            head = f"{judgement.number:2}  {judgement.verdict:13}  "
+            head = f"{judgement.number:2}  {judgement.verdict.value:14}  "
             indent = " " * len(head)
             lines += ["", *textwrap.wrap(head + judgement.claim, WIDTH, subsequent_indent=indent)]
             for line in _lines(judgement.parts):
@@ -58,12 +69,12 @@ def _as_text(all_verdicts: list[Verdicts]) -> str:
 
 
 def _as_markdown(all_verdicts: list[Verdicts]) -> str:
-    blocks = [TERMS]
+    blocks = [f"{TERMS} Marks: {_marks()}."]
     for verdicts in all_verdicts:
         rows = ["| | claim | verdict | figures |", "|---|---|---|---|"]
         for judgement in verdicts.judgements:
             figures = "<br>".join(_lines(judgement.parts))
-            cells = [str(judgement.number), judgement.claim, judgement.verdict, figures]
+            cells = [str(judgement.number), judgement.claim, judgement.verdict.value, figures]
             rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         blocks += [
             f"## {verdicts.machine}",
