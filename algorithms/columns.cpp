@@ -162,8 +162,7 @@ void Columns::updateObjects(const Frame& frame) {
   constexpr double kMinTests = 190;            // a box takes as long, binning included
   team().wake(workersFor(kMinTests * count));  // meanwhile, this thread chooses the layout
   boxes_.resize(frame.boxes.size());
-  takeSample(
-      boxes_.size(), [&](std::size_t i) -> const Aabb& { return frame.boxes[i]; }, sample_);
+  takeSample(boxes_.size(), [&](std::size_t i) -> const Aabb& { return frame.boxes[i]; }, sample_);
   layout_ = Layout(sample_, boxes_.size(), static_cast<double>(copy_cost_));
   used_workers_ = workersFor(std::max(kMinTests, layout_.costPerBox()) * count);
   while (!binBoxes(frame)) layout_.coarsen();

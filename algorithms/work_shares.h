@@ -36,8 +36,7 @@ class WorkShares {
   /// Rows, of which row i is tested against the columns (i, ends[i]).
   void measureRows(std::span<const std::uint32_t> ends, ThreadTeam& team) {
     constexpr std::size_t kRows = 64;
-    measure(
-        ends.size(), kRows, [&](std::size_t i) { return ends[i] - i; }, team);
+    measure(ends.size(), kRows, [&](std::size_t i) { return ends[i] - i; }, team);
   }
 
   /// The items of one worker: all shares have about the same work.

@@ -34,16 +34,17 @@ GlObject makeShader(const Gl& gl, GLenum type, std::string_view source) {
 
 }  // namespace
 
-Gl::Gl(const GlLoader& load) {
+Gl::Gl(const GlLoader& load){
 #define BROADMARK_GL_LOAD(name)                                \
   (name) = reinterpret_cast<decltype(name)>(load("gl" #name)); \
   if ((name) == nullptr) throw RenderError("OpenGL lacks gl" #name);
-  BROADMARK_GL_FUNCTIONS(BROADMARK_GL_LOAD)
+    BROADMARK_GL_FUNCTIONS(BROADMARK_GL_LOAD)
 #undef BROADMARK_GL_LOAD
 }
 
 Gl::Gl(const OffscreenContext& context)
-    : Gl([&context](const char* name) { return context.function(name); }) {}
+    : Gl([&context](const char* name) { return context.function(name); }) {
+}
 
 GLint Gl::integer(GLenum what) const {
   GLint value = 0;

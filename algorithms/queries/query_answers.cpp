@@ -13,7 +13,7 @@ namespace broadmark::broadphase {
 
 template <class Query, class T, class Answer>
 void QueryTree::answerAll(std::span<const Query> queries, QueryResults<T>& results,
-                          std::vector<T> Worker::*found, ThreadTeam& team, Answer answer) {
+                          std::vector<T> Worker::* found, ThreadTeam& team, Answer answer) {
   constexpr double kQueryNs = 500;
   results.items.clear();
   results.starts.resize(queries.size() + 1);

@@ -92,7 +92,7 @@ class QueryTree {
 
   template <class Query, class T, class Answer>
   void answerAll(std::span<const Query> queries, QueryResults<T>& results,
-                 std::vector<T> Worker::*found, ThreadTeam& team, Answer answer);
+                 std::vector<T> Worker::* found, ThreadTeam& team, Answer answer);
 
   const QueryKernels& kernels_;
   bool is_built_ = false;

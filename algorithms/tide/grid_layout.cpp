@@ -33,8 +33,7 @@ Edges edgesOf(std::span<const Aabb> sample, int axis) {
 
 std::vector<Aabb> sampleOf(std::span<const Aabb> boxes) {
   std::vector<Aabb> sample;
-  takeSample(
-      boxes.size(), [&](std::size_t i) -> const Aabb& { return boxes[i]; }, sample);
+  takeSample(boxes.size(), [&](std::size_t i) -> const Aabb& { return boxes[i]; }, sample);
   std::erase_if(sample, isEmpty);
   return sample;
 }

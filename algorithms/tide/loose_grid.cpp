@@ -198,7 +198,8 @@ void LooseGrid::collectCandidates(Batch& batch, std::size_t hits) const {
     add();
     add();
     add();
-    while (slots != 0) [[unlikely]] add();
+    while (slots != 0) [[unlikely]]
+      add();
   }
   batch.candidates.resize(static_cast<std::size_t>(end - batch.candidates.data()));
   for (const Candidate& candidate : batch.candidates) prefetchL2(&bodies_[candidate.other]);

@@ -179,8 +179,7 @@ CLI::Option* addPositive(CLI::App& app, const std::string& name, const std::stri
   const auto set = [&target, name](const std::string& text) {
     target = parseNumber(text, name, 0, true);
   };
-  return addValue(
-      app, name, type, set, [&] { return fmt::format("{}", target); }, doc);
+  return addValue(app, name, type, set, [&] { return fmt::format("{}", target); }, doc);
 }
 
 double parseShare(const std::string& text, std::string_view option, bool open) {

@@ -59,8 +59,7 @@ CLI::Option* addInteger(CLI::App& app, const std::string& name, const std::strin
   const auto set = [&target, name, min, max](const std::string& text) {
     target = static_cast<Integer>(parseInteger(text, name, min, max));
   };
-  return addValue(
-      app, name, type, set, [&target] { return std::to_string(target); }, doc);
+  return addValue(app, name, type, set, [&target] { return std::to_string(target); }, doc);
 }
 
 /// An option with a name of a NameTable as value. The default is the value of `target`.

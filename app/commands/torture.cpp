@@ -420,8 +420,7 @@ std::function<int()> add(CLI::App& app) {
   const auto set_seed = [options = options.get()](const std::string& text) {
     options->seed = parseInteger(text, "--seed", 0, std::numeric_limits<std::uint32_t>::max());
   };
-  addValue(
-      app, "--seed", "S", set_seed, [] { return "1"; }, "same seed, same rounds");
+  addValue(app, "--seed", "S", set_seed, [] { return "1"; }, "same seed, same rounds");
   addInteger(app, "--jobs", "J", options->jobs, 1, 1024, "rounds run at the same time");
   addPath(app, "--output", "DIR", options->output,
           "directory for recordings of faults, which are rerun first, and for the log "

@@ -62,7 +62,7 @@ Cells boxCells(const RangeStatistics& range) {
 constexpr const char* kPopulationHeadings[] = {"fewest", "bodies", "most",
                                                "appear", "vanish", "change"};
 Cells populationCells(const RangeStatistics& range) {
-  const auto change = [&](double Changes::*member) {
+  const auto change = [&](double Changes::* member) {
     return range.changes ? number((*range.changes).*member) : kNoValue;
   };
   return {number(range.min_bodies),   number(range.mean_bodies),  number(range.max_bodies),

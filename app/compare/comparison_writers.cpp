@@ -158,8 +158,7 @@ std::string csv(const Comparison& comparison) {
 
 /// Escapes a text for XML. Control characters, which XML cannot represent, become blanks.
 std::string escapedForXml(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
   return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 

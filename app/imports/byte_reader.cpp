@@ -23,7 +23,7 @@ bool isLineEnd(int byte) { return byte == '\n' || byte == '\r'; }
 
 ByteReader::ByteReader(const std::filesystem::path& path)
     : path_(path.string()), file_(openContents(path)), buffer_(kBufferBytes) {
-  struct stat status {};
+  struct stat status{};
   if (::fstat(file_.get(), &status) == 0) size_ = static_cast<std::uint64_t>(status.st_size);
 }
 

@@ -34,7 +34,7 @@ bool isSupported(std::string_view name) {
 
 std::string readBytes(const fs::path& path) {
   const FileDescriptor file = openContents(path);
-  struct stat status {};
+  struct stat status{};
   const bool known = ::fstat(file.get(), &status) == 0;
   std::string bytes(known ? static_cast<std::size_t>(status.st_size) : 0, '\0');
   if (!known || readAll(file.get(), std::as_writable_bytes(std::span(bytes)), 0) < bytes.size()) {

@@ -318,8 +318,7 @@ class PlyReader {
     if (order_ && !element.hasLists()) {
       return bytes_.seek(bytes_.offset() + element.count * element.minRowBytes());
     }
-    readRows(
-        element, [](std::size_t, double) {}, [] {});
+    readRows(element, [](std::size_t, double) {}, [] {});
   }
 
   /// Calls value(property, number) for the used numbers of each row, then row_end().

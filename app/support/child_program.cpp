@@ -60,7 +60,9 @@ ProgramEnd runProgram(std::vector<std::string> command,
   ChildProcess child(std::move(command), {.descriptors = {-1, writing.get(), writing.get()},
                                           .variables = variables,
                                           .own_group = true});
-  { const FileDescriptor closed = std::move(writing); }
+  {
+    const FileDescriptor closed = std::move(writing);
+  }
   std::optional<std::string> printed = readAll(reading, cancelled);
   if (!printed) {
     child.kill();

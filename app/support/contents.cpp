@@ -41,7 +41,7 @@ auto patiently(const Call& call) {
 }
 
 bool isPipe(const fs::path& path) {
-  struct stat status {};
+  struct stat status{};
   return ::stat(path.c_str(), &status) == 0 &&
          (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
 }

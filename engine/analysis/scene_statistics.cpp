@@ -114,7 +114,7 @@ Json toJson(const RangeStatistics& range, const SceneInfo& scene) {
   if (scene.all_present) return json;
   json["bodies"] = {
       {"min", range.min_bodies}, {"mean", range.mean_bodies}, {"max", range.max_bodies}};
-  const auto change = [&](double Changes::*which) {
+  const auto change = [&](double Changes::* which) {
     return range.changes ? Json((*range.changes).*which) : Json(nullptr);
   };
   json["appeared"] = change(&Changes::appeared);

@@ -29,7 +29,7 @@ CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const Layer
   const auto data = std::make_shared<Data>();
   data->changes = changes;
   data->matrix = matrix;
-  const auto store = [&](auto BodyGroups::*member, auto default_value, auto& all) {
+  const auto store = [&](auto BodyGroups::* member, auto default_value, auto& all) {
     const bool any = std::ranges::any_of(
         bodies, [&](const BodyGroups& body) { return body.*member != default_value; });
     if (!any) return;

@@ -50,8 +50,8 @@ std::filesystem::path resolved(std::filesystem::path path) {
 
 /// Whether `path` still names the open file.
 bool hasName(const FileDescriptor& file, const std::filesystem::path& path) {
-  struct stat open {};
-  struct stat named {};
+  struct stat open{};
+  struct stat named{};
   return ::fstat(file.get(), &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
@@ -136,7 +136,7 @@ FileDescriptor unnamedFile() {
 FileDescriptor openForReading(const std::filesystem::path& path) {
   // A FIFO without a writer would block; on regular files O_NONBLOCK has no effect.
   FileDescriptor file = opened(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
-  struct stat status {};
+  struct stat status{};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) throw failure(path, "cannot read");
   if (!S_ISREG(status.st_mode)) {
     throw InputError(fmt::format("{}: cannot read: not a regular file", path.string()));

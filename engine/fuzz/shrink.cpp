@@ -407,8 +407,7 @@ ShrunkPart shrinkFailure(const Case& test_case, IndexedFrames& source, std::uint
   };
   ShrinkOptions of_case = options;
   of_case.subject = caseName(test_case);
-  return shrinkPart(
-      source, frame, [] { return std::vector<std::uint32_t>(); }, fails, of_case);
+  return shrinkPart(source, frame, [] { return std::vector<std::uint32_t>(); }, fails, of_case);
 }
 
 ShrunkCase shrinkCase(const Case& test_case, IndexedFrames& source, const FrameDifference& known,

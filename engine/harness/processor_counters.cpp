@@ -63,7 +63,9 @@ std::optional<ProcessorCounters::Reading> ProcessorCounters::read(const Counter&
 bool ProcessorCounters::countInstructions() {
   ProcessorCounters probe;
   probe.restart();
-  { const Counting counting(probe); }
+  {
+    const Counting counting(probe);
+  }
   return probe.counts()[ProcessorCounter::instructions].value_or(0) > 0;
 }
 

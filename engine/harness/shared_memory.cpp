@@ -38,7 +38,7 @@ void SharedMemory::readBytes(std::span<std::byte> bytes, std::uint64_t offset) c
 
 void SharedMemory::requireAvailable(std::uint64_t offset, std::uint64_t count,
                                     std::size_t item_bytes) const {
-  struct stat status {};
+  struct stat status{};
   if (::fstat(file_.get(), &status) != 0) throw systemError("cannot read shared memory");
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (offset > size || count > (size - offset) / item_bytes) {

@@ -51,7 +51,7 @@ const RecordingFormat& formatOf(std::string_view extension) {
 }
 
 struct stat statusOf(const FileDescriptor& file, const std::string& name) {
-  struct stat status {};
+  struct stat status{};
   if (::fstat(file.get(), &status) == 0) return status;
   throw InputError(fmt::format("{}: cannot read: {}", name, std::strerror(errno)));
 }
@@ -225,8 +225,7 @@ bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& 
 }
 
 bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress) {
-  return recordAll(
-      source, [&](const Frame& frame) { writer.write(frame); }, progress);
+  return recordAll(source, [&](const Frame& frame) { writer.write(frame); }, progress);
 }
 
 }  // namespace broadmark

@@ -28,9 +28,7 @@ struct AnswerNames {
 constexpr AnswerNames namesOf(Answer) { return {}; }
 
 template <class T>
-concept Named = requires(T value) {
-  namesOf(value);
-};
+concept Named = requires(T value) { namesOf(value); };
 
 template <class T>
 ColumnValue valueOf(const T& value) {
@@ -115,7 +113,7 @@ CaseColumn stored(const std::string& key, std::string_view title, JsonField json
 
 /// A time of the summary.
 CaseColumn summaryTime(const std::string& key, std::string_view title, const char* path,
-                       double Summary::*time, ColumnDisplay shown) {
+                       double Summary::* time, ColumnDisplay shown) {
   shown.known = Availability::timed;
   shown.figure = true;
   shown.meaningful = hasFrames;
@@ -127,7 +125,7 @@ CaseColumn summaryTime(const std::string& key, std::string_view title, const cha
 
 /// A bound of the interval around the mean.
 CaseColumn ci95Bound(const std::string& key, std::string_view title, const char* path,
-                     double Interval::*bound) {
+                     double Interval::* bound) {
   return computed(key, title, optional(path), [bound](R, S summary) {
     return summary.ci95 ? std::optional((*summary.ci95).*bound) : std::nullopt;
   });
@@ -308,7 +306,7 @@ const std::vector<CaseColumn>& caseColumns() {
   return columns;
 }
 
-std::vector<const CaseColumn*> caseColumns(int ColumnDisplay::*place) {
+std::vector<const CaseColumn*> caseColumns(int ColumnDisplay::* place) {
   std::vector<const CaseColumn*> columns;
   for (const CaseColumn& column : caseColumns()) {
     if (column.shown.*place > 0) columns.push_back(&column);

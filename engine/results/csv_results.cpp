@@ -31,7 +31,7 @@ std::string fieldOf(const ColumnValue& value, ColumnUnit unit) {
   return unit == ColumnUnit::seconds ? fmt::format("{:.9g}", *number) : fmt::format("{}", *number);
 }
 
-std::string headerOf(bool ColumnDisplay::*table) {
+std::string headerOf(bool ColumnDisplay::* table) {
   std::string text;
   for (const CaseColumn& column : caseColumns()) {
     if (column.shown.*table) text += (text.empty() ? "" : ",") + column.key;
@@ -39,7 +39,7 @@ std::string headerOf(bool ColumnDisplay::*table) {
   return text;
 }
 
-std::string rowOf(bool ColumnDisplay::*table, const CaseResult& result, const Summary& summary) {
+std::string rowOf(bool ColumnDisplay::* table, const CaseResult& result, const Summary& summary) {
   std::string text;
   for (const CaseColumn& column : caseColumns()) {
     if (!(column.shown.*table)) continue;

@@ -96,7 +96,7 @@ py::array_t<std::int64_t> startsOf(const std::vector<std::size_t>& starts) {
 
 /// A field of all items.
 template <class T, class Value>
-py::array_t<Value> fieldOf(const std::vector<T>& items, Value T::*field) {
+py::array_t<Value> fieldOf(const std::vector<T>& items, Value T::* field) {
   py::array_t<Value> array(static_cast<py::ssize_t>(items.size()));
   std::ranges::transform(items, array.mutable_data(),
                          [field](const T& item) { return item.*field; });

@@ -436,9 +436,11 @@ def _row(case: dict[str, Any]) -> dict[str, Any]:
     known = {"always": True, "timed": bool(case["initialize_ns"]), "checked": case["checked"]}
     return {
         **{
-            column["key"]: _FORMS[column["form"]](_value_at(column, case), case)
-            if known[column["known"]]
-            else None
+            column["key"]: (
+                _FORMS[column["form"]](_value_at(column, case), case)
+                if known[column["known"]]
+                else None
+            )
             for column in COLUMNS
         },
         "complete": is_complete(case),

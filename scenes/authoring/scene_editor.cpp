@@ -292,7 +292,7 @@ void SceneEditor::change(std::string_view verb, const std::function<void(Authore
 }
 
 template <class Value>
-void SceneEditor::changeScene(std::string name, Value AuthoredScene::*property, Value value,
+void SceneEditor::changeScene(std::string name, Value AuthoredScene::* property, Value value,
                               const std::string& fault) {
   if (!fault.empty()) throw InputError(fault);
   if (value == scene_.*property) return;

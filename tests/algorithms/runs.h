@@ -106,8 +106,7 @@ inline Algorithm algorithmOf(const std::string& id) {
 /// The id as a name that GoogleTest accepts, such as "sap_simd".
 inline std::string testName(const Algorithm& algorithm) {
   std::string name = algorithm.id;
-  std::ranges::replace_if(
-      name, [](char c) { return std::isalnum(c) == 0; }, '_');
+  std::ranges::replace_if(name, [](char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 }
 

@@ -58,9 +58,7 @@ TEST(SelectAlgorithms, AllAreThoseThatFindPairs) {
 }
 
 TEST(SelectAlgorithms, UnknownOnesAreSuggested) {
-  EXPECT_THAT(inputErrorOf([] {
-                idsOf({"bf", "sapp"});
-              }),
+  EXPECT_THAT(inputErrorOf([] { idsOf({"bf", "sapp"}); }),
               AllOf(HasSubstr("--algorithm"), HasSubstr("'sapp'"), HasSubstr("'sap'")));
   EXPECT_THAT(inputErrorOf([] { idsOf({"nothing*"}); }), HasSubstr("'nothing*'"));
 }
@@ -131,9 +129,7 @@ TEST(SelectCases, AParameterMayBeOfOneAlgorithmOnly) {
       names({{"DBVT:margin", "0.1,0.2"}}),
       ElementsAre("dbvt-d/margin=0.1", "dbvt-d/margin=0.2", "kd/scalar", "kd-mt/scalar/t1"));
   EXPECT_THAT(
-      inputErrorOf([&] {
-        names({{"kd:margin", "1"}, {"kd*:margin", "2"}});
-      }),
+      inputErrorOf([&] { names({{"kd:margin", "1"}, {"kd*:margin", "2"}}); }),
       AllOf(HasSubstr("'kd:margin'"), HasSubstr("'kd*:margin'"), HasSubstr("margin of kd")));
 }
 
@@ -145,9 +141,7 @@ TEST(SelectCases, TheOriginalsIdsStateTheirInstructionSet) {
 
 TEST(RequireKnownParameters, NamesTheUnknownOne) {
   requireKnownParameters({{"seed", "1"}}, {"density", "seed"});
-  EXPECT_THAT(inputErrorOf([] {
-                requireKnownParameters({{"densty", "1"}}, {"density", "seed"});
-              }),
+  EXPECT_THAT(inputErrorOf([] { requireKnownParameters({{"densty", "1"}}, {"density", "seed"}); }),
               AllOf(HasSubstr("--param"), HasSubstr("'densty'"), HasSubstr("'density'")));
 }
 

@@ -665,11 +665,9 @@ TEST_F(GltfImports, RotationsTakeTheShortWay) {
     return contents(file, {{"frame_rate", "3"}}).frames;
   };
   // A quarter turn about z; the second quaternion has the other sign.
-  const auto linear = turned(
-      [&](GltfFile& file) {
-        return file.floats("VEC4", {0, 0, 0, 1, 0, 0, -half, -half});
-      },
-      "LINEAR");
+  const auto linear =
+      turned([&](GltfFile& file) { return file.floats("VEC4", {0, 0, 0, 1, 0, 0, -half, -half}); },
+             "LINEAR");
   const auto shorts = turned(
       [&](GltfFile& file) {
         return file.accessor<std::int16_t>("VEC4", {0, 0, 0, 32767, 0, 0, 23170, 23170},

@@ -126,9 +126,7 @@ TEST_F(Recognition, FilesOfAFolder) {
 TEST_F(Recognition, FilesOfOneKind) {
   write("a1.xyz", "1\n\nA 1 2 3\n");
   write("a2.xyz", kDump);
-  EXPECT_THAT(inputErrorOf([&] {
-                importFrom(directory_ / "a*.xyz", {{"radius", "1"}});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { importFrom(directory_ / "a*.xyz", {{"radius", "1"}}); }),
               AllOf(HasSubstr("a2.xyz"), HasSubstr("xyz is expected")));
 }
 

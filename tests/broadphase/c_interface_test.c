@@ -108,7 +108,7 @@ static void test_filters(void) {
   EXPECT(bm_create(&options, &object) == BM_OK);
   const uint32_t tags[3] = {7, BM_NO_TAG, BM_NO_TAG};
   for (uint32_t i = 0; i < 4; ++i) {
-    EXPECT(bm_set_filter(object, i, i<2, i> 0 ? tags : NULL) == BM_OK);
+    EXPECT(bm_set_filter(object, i, i < 2, i > 0 ? tags : NULL) == BM_OK);
     boxes[i].min[0] = boxes[i].min[1] = boxes[i].min[2] = 0;
     boxes[i].max[0] = boxes[i].max[1] = boxes[i].max[2] = 1;
   }

@@ -57,10 +57,9 @@ TEST_F(BroadphaseMisuse, OfArraysThrows) {
   EXPECT_THAT(invalidArgument([&] { object_.update({nullptr, first, 1, 24}); }), HasSubstr("null"));
   EXPECT_THAT(invalidArgument([&] { object_.update({first, nullptr, 1, 24}); }), HasSubstr("null"));
   EXPECT_THAT(invalidArgument([&] { object_.update({first, first, 2, 8}); }), HasSubstr("stride"));
-  EXPECT_EQ(invalidArgument([&] {
-              object_.update({first, first, bp::BroadPhase::kMaxBodies + 1, 24});
-            }),
-            "536870912 bodies: at most 536870911 are supported");
+  EXPECT_EQ(
+      invalidArgument([&] { object_.update({first, first, bp::BroadPhase::kMaxBodies + 1, 24}); }),
+      "536870912 bodies: at most 536870911 are supported");
   EXPECT_THAT(invalidArgument([&] { object_.setFilter(0, {.layer = 32}); }),
               HasSubstr("layers 0 to 31"));
   EXPECT_THAT(invalidArgument([&] { object_.setFilter(0xFFFF'FFFF, {}); }), HasSubstr("536870910"));

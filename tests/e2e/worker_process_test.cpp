@@ -154,9 +154,7 @@ TEST(WorkerProcess, ADifferentProgramIsNamed) {
   const auto missing =
       makeWorkerProcess(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
                         {.command = {"/no/such/program"}});
-  EXPECT_THAT(inputErrorOf([&] {
-                missing->start(sceneOf({boxes, boxes}), {0, boxes});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { missing->start(sceneOf({boxes, boxes}), {0, boxes}); }),
               HasSubstr("/no/such/program"));
 }
 

@@ -227,10 +227,7 @@ TEST_P(WrongEvents, AreMismatches) {
          began.push_back(kFarApart);
          ended.push_back(kFarApart);
        }},
-      {"one with itself",
-       [](Pairs& began, Pairs&) {
-         began.push_back({2, 2});
-       }},
+      {"one with itself", [](Pairs& began, Pairs&) { began.push_back({2, 2}); }},
       {"one the wrong way round", [](Pairs& began, Pairs&) { std::swap(began[0].a, began[0].b); }},
   };
   for (const auto& [name, spoil] : faults) {
@@ -251,13 +248,9 @@ TEST(WrongEvents, AWrongAnswerGivesWrongEvents) {
   for (const CheckMode check : {CheckMode::full, CheckMode::hash}) {
     for (const auto& spoil : std::vector<std::function<void(Pairs&)>>{
              [](Pairs& answer) { answer.pop_back(); }, [](Pairs& answer) { answer.clear(); },
-             [](Pairs& answer) {
-               answer.push_back({0, 3});
-             },
+             [](Pairs& answer) { answer.push_back({0, 3}); },
              [](Pairs& answer) { answer.push_back(answer.front()); },
-             [](Pairs& answer) {
-               answer.push_back({2, 1});
-             }}) {
+             [](Pairs& answer) { answer.push_back({2, 1}); }}) {
       Case test_case = spoilingAnswer(spoil);
       EXPECT_EQ(runOnChain(test_case, {.check = check}).status, Status::mismatch);
       test_case.answer = AnswerKind::events;

@@ -29,7 +29,9 @@ TEST(AtomicFile, AppearsWithCommit) {
 
 TEST(AtomicFile, LeavesNothingWithoutCommit) {
   const TemporaryDirectory directory;
-  { AtomicFile(directory / "a.txt").write("half"); }
+  {
+    AtomicFile(directory / "a.txt").write("half");
+  }
   EXPECT_TRUE(directory.empty());
 }
 

@@ -119,27 +119,19 @@ TEST(Parameters, BadValuesAreRefusedAndNamed) {
 
 TEST(Parameters, MessagesSayWhatWouldBeRight) {
   TypedParameters parameters;
-  EXPECT_THAT(inputErrorOf([&] {
-                setParameters(parameters, {{"cells", "0"}});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { setParameters(parameters, {{"cells", "0"}}); }),
               AllOf(HasSubstr("cells"), HasSubstr("'0'"), HasSubstr("1…1000")));
-  EXPECT_THAT(inputErrorOf([&] {
-                setParameters(parameters, {{"shape", "cube"}});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { setParameters(parameters, {{"shape", "cube"}}); }),
               AllOf(HasSubstr("shape"), HasSubstr("'cube'"), HasSubstr("did you mean 'cubes'"),
                     HasSubstr("spheres")));
 }
 
 TEST(Parameters, UnknownNamesSuggestTheNearest) {
   TypedParameters parameters;
-  EXPECT_THAT(inputErrorOf([&] {
-                setParameters(parameters, {{"cell", "7"}});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { setParameters(parameters, {{"cell", "7"}}); }),
               AllOf(HasSubstr("'cell'"), HasSubstr("did you mean 'cells'?")));
   Parametrised nothing;
-  EXPECT_THAT(inputErrorOf([&] {
-                setParameters(nothing, {{"cells", "7"}});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { setParameters(nothing, {{"cells", "7"}}); }),
               AllOf(HasSubstr("unknown"), HasSubstr("'cells'"), HasSubstr("no parameters")));
 }
 

@@ -168,7 +168,9 @@ TEST(RecordingWriter, LeavesNothingUnlessFinished) {
 TEST(RecordingWriter, AFailedOneKeepsTheOldRecording) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.aabbs") << "old";
-  { RecordingWriter writer(directory / "a.aabbs", handMadeScene()); }
+  {
+    RecordingWriter writer(directory / "a.aabbs", handMadeScene());
+  }
   EXPECT_EQ(std::filesystem::file_size(directory / "a.aabbs"), 3U);
 }
 
@@ -374,7 +376,9 @@ TEST(BadRecording, WhatIsNoFile) {
   const std::filesystem::path fifo = directory / "fifo";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   const std::filesystem::path file = directory / "empty";
-  { const std::ofstream empty(file); }
+  {
+    const std::ofstream empty(file);
+  }
   const std::pair<std::filesystem::path, const char*> invalid[] = {
       {directory / "missing", "No such file"},
       {directory / "", "not a regular file"},

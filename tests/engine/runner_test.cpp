@@ -53,52 +53,13 @@ TEST_P(FaultyAnswer, IsAMismatchWithTheFrameAndThePair) {
   const auto missed = [](const FrameDifference& d) { return d.missed_pairs; };
   const auto extra = [](const FrameDifference& d) { return d.false_pairs; };
   const auto invalid = [](const FrameDifference& d) { return d.invalid_pairs; };
-  const Fault faults[] = {{"misses",
-                           [](auto& a) {
-                             std::erase(a, Pair{1, 2});
-                           },
-                           1,
-                           0,
-                           0,
-                           missed,
-                           {1, 2}},
-                          {"false",
-                           [](auto& a) {
-                             a.push_back({0, 3});
-                           },
-                           0,
-                           1,
-                           0,
-                           extra,
-                           {0, 3}},
-                          {"duplicate",
-                           [](auto& a) {
-                             a.push_back({0, 1});
-                           },
-                           0,
-                           0,
-                           1,
-                           invalid,
-                           {0, 1}},
-                          {"self",
-                           [](auto& a) {
-                             a.push_back({2, 2});
-                           },
-                           0,
-                           0,
-                           1,
-                           invalid,
-                           {2, 2}},
-                          {"out of range",
-                           [](auto& a) {
-                             a.push_back({2, 4});
-                           },
-                           0,
-                           0,
-                           1,
-                           invalid,
-                           {2, 4}},
-                          {"replaced", [](auto& a) { a[0] = a[1]; }, 1, 0, 1, missed, {0, 1}}};
+  const Fault faults[] = {
+      {"misses", [](auto& a) { std::erase(a, Pair{1, 2}); }, 1, 0, 0, missed, {1, 2}},
+      {"false", [](auto& a) { a.push_back({0, 3}); }, 0, 1, 0, extra, {0, 3}},
+      {"duplicate", [](auto& a) { a.push_back({0, 1}); }, 0, 0, 1, invalid, {0, 1}},
+      {"self", [](auto& a) { a.push_back({2, 2}); }, 0, 0, 1, invalid, {2, 2}},
+      {"out of range", [](auto& a) { a.push_back({2, 4}); }, 0, 0, 1, invalid, {2, 4}},
+      {"replaced", [](auto& a) { a[0] = a[1]; }, 1, 0, 1, missed, {0, 1}}};
   for (const Fault& fault : faults) {
     SCOPED_TRACE(fault.name);
     const CaseResult result = runOnChain(spoilingAnswer(fault.spoil), {.check = GetParam()});

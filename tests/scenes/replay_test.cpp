@@ -325,9 +325,7 @@ TEST_F(Replays, RefusalsListTheRecordingsThatExist) {
               AllOf(HasSubstr(aabbs.string()), HasSubstr("reads .posrot")));
   EXPECT_THAT(refusal("viewer", {{"objects", "63"}, {"input", aabbs.string()}}),
               AllOf(HasSubstr("contains Brownian Cubes N64 F5"), HasSubstr("N63")));
-  EXPECT_THAT(inputErrorOf([&] {
-                (void)replay("viewer", {{"seed", "3"}});
-              }),
+  EXPECT_THAT(inputErrorOf([&] { (void)replay("viewer", {{"seed", "3"}}); }),
               HasSubstr("unknown parameter 'seed'"));
   EXPECT_THAT(inputErrorOf([&] { makeSimulation("brownian", "viewr"); }),
               HasSubstr("did you mean 'viewer'"));
@@ -336,14 +334,10 @@ TEST_F(Replays, RefusalsListTheRecordingsThatExist) {
 TEST_F(Replays, ABrokenOrRenamedInputIsRefused) {
   const fs::path path = posrotOf(bakeSmall("cubes"));
   fs::copy_file(path, small_ / "Brownian Cubes N72 F5frames.posrot");
-  EXPECT_THAT(inputErrorOf([&] {
-                (void)replay("viewer", {{"objects", "72"}})->scene();
-              }),
+  EXPECT_THAT(inputErrorOf([&] { (void)replay("viewer", {{"objects", "72"}})->scene(); }),
               AllOf(HasSubstr("N72 F5frames.posrot"), HasSubstr("contains Brownian Cubes N64")));
   fs::resize_file(path, 1000);
-  EXPECT_THAT(inputErrorOf([&] {
-                (void)replay("viewer", {{"objects", "64"}})->scene();
-              }),
+  EXPECT_THAT(inputErrorOf([&] { (void)replay("viewer", {{"objects", "64"}})->scene(); }),
               AllOf(HasSubstr(path.string()), HasSubstr("too short")));
 }
 

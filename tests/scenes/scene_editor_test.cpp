@@ -218,11 +218,8 @@ TEST(SceneEditor, ARefusedEditChangesNothing) {
   refuses([&] { editor.scale(0); }, "size");
   refuses([&] { editor.scale(std::nanf("")); }, "body 0");
   refuses([&] { editor.move({3e9F, 0, 0}); }, "position");
-  refuses(
-      [&] {
-        editor.set("push", &AuthoredBody::linear_velocity, {0, INFINITY, 0});
-      },
-      "velocity");
+  refuses([&] { editor.set("push", &AuthoredBody::linear_velocity, {0, INFINITY, 0}); },
+          "velocity");
   refuses([&] { editor.transform("turn", {.turn = {0, 0, 0, 0}}); }, "rotation");
   refuses([&] { editor.setName("a/b"); }, "name");
   refuses([&] { editor.setWorld({}); }, "world");

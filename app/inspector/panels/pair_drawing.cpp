@@ -9,7 +9,7 @@ namespace broadmark {
 namespace {
 
 Rgb relationColour(const Palette& theme, AxisRelation::Type type) {
-  constexpr Rgb Palette::*kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
+  constexpr Rgb Palette::* kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
   return theme.*kColours[static_cast<std::size_t>(type)];
 }
 

@@ -22,9 +22,9 @@ namespace broadmark {
 /// A kind of wrong pair in FrameDifference.
 struct WrongKind {
   std::string_view name;
-  std::vector<Pair> FrameDifference::*pairs;
-  std::uint64_t FrameDifference::*count;
-  Rgb Palette::*colour;
+  std::vector<Pair> FrameDifference::* pairs;
+  std::uint64_t FrameDifference::* count;
+  Rgb Palette::* colour;
 };
 /// The last kind is not a mismatch.
 inline constexpr std::array<WrongKind, 4> kWrongKinds = {

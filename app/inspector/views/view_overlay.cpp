@@ -15,8 +15,8 @@ namespace {
 constexpr float kBackdrop = 0.82F;  // opacity behind text
 
 /// Indexed by verdict.
-constexpr Rgb Palette::*kVerdictColours[] = {&Palette::faint, &Palette::good, &Palette::bad,
-                                             &Palette::warning};
+constexpr Rgb Palette::* kVerdictColours[] = {&Palette::faint, &Palette::good, &Palette::bad,
+                                              &Palette::warning};
 
 /// A row of the legend; columns: meaning, count by the shown answer, count by the oracle's.
 struct LegendRow {

@@ -157,8 +157,7 @@ std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {
   }
   std::vector<std::uint32_t> all(scene.frames + 1);
   std::iota(all.begin(), all.end(), 0U);
-  return subset(
-      scene, [&](std::uint32_t frame) { return frames.at(frame); }, order, all);
+  return subset(scene, [&](std::uint32_t frame) { return frames.at(frame); }, order, all);
 }
 
 }  // namespace broadmark

@@ -136,7 +136,7 @@ CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::ui
   if (json.is_null()) return {};
   const std::size_t bodies = scene.objects;
   std::vector<BodyGroups> groups(bodies);
-  const auto read = [&]<class Item>(const char* name, Item BodyGroups::*member) {
+  const auto read = [&]<class Item>(const char* name, Item BodyGroups::* member) {
     if (!json.at(name).get<bool>()) return;
     std::vector<Item> items;
     memory.read(items, bodies, offset);

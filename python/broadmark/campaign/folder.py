@@ -1,10 +1,10 @@
 """The folder of a campaign and its layout.
 
-    campaign.json                          a copy of the campaign file
-    recordings/bullet seed=1/…             a folder for each engine, seed and parameters
-    runs/RECORDING/1.jsonl …               an attempt per call of the program (attempts.py)
-    results.json                           all finished cases
-    slurm/                                 job scripts and logs
+- `campaign.json`: a copy of the campaign file
+- `recordings/bullet seed=1/…`: a folder for each engine, seed and parameters
+- `runs/RECORDING/1.jsonl …`: an attempt per call of the program (attempts.py)
+- `results.json`: all finished cases
+- `slurm/`: job scripts and logs
 """
 
 from __future__ import annotations

@@ -32,6 +32,9 @@ _MIN_RANGE, _MIN_COUNT_RANGE = 1.3, 1.06
 #: Space for a row of labels above the points, as a share of a panel's height in points.
 _LABEL_POINTS = 8.5
 
+#: The size of a panel in inches, by the most panels of a page.
+PANEL_SIZES = [(1, (7.6, 3.6)), (2, (6.4, 2.6)), (6, (4.2, 2.3)), (math.inf, (2.9, 1.75))]
+
 
 def pages(history: History) -> list[tuple[str, list[str]]]:
     """The scenes with the ids of their cases: by number of bodies, then as in the results."""
@@ -45,15 +48,7 @@ def page(history: History, title: str, ids: list[str]) -> Figure:
     """The panels of a scene."""
     columns = _columns(len(ids))
     rows = math.ceil(len(ids) / columns)
-    size = (
-        (7.6, 3.6)
-        if len(ids) == 1
-        else (6.4, 2.6)
-        if len(ids) == 2
-        else (4.2, 2.3)
-        if len(ids) <= 6
-        else (2.9, 1.75)
-    )
+    size = next(size for max_ids, size in PANEL_SIZES if len(ids) <= max_ids)
     width = max(size[0] * columns, 4) + 0.3
     entries = _legend_entries(history)
     legend_columns = max(1, min(len(entries), int(width / 2.9)))

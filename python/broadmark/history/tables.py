@@ -100,9 +100,11 @@ def broken_lines(history: History) -> dict[str, list[str]]:
         before = known.get((line.case, line.machine))
         if before is not None:
             changed = [
-                "other recordings"
-                if name == "recording"
-                else f"{name} {old or 'none'} -> {new or 'none'}"
+                (
+                    "other recordings"
+                    if name == "recording"
+                    else f"{name} {old or 'none'} -> {new or 'none'}"
+                )
                 for (name, old), (_, new) in zip(before.conditions, line.conditions)
                 if old != new
             ]

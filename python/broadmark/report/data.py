@@ -115,9 +115,9 @@ def _recordings(
                     "objects": int(recording["objects"]),
                     "frames": int(recording["frames"]),
                     "hash": str(recording["hash"]),
-                    "file": ""
-                    if isinstance(recording["source"], dict)
-                    else str(recording["source"]),
+                    "file": (
+                        "" if isinstance(recording["source"], dict) else str(recording["source"])
+                    ),
                     "words": words,
                     "command": shlex.join(words),
                 }

@@ -53,9 +53,11 @@ def variant_labels(cases: list[dict[str, Any]], machines: list[int]) -> list[str
         varying_traits = names[str(case["algorithm"])]
         plugin = os.path.basename(case.get("plugin") or "")
         parts = [
-            f"{plugin}:{case['algorithm']}"
-            if " plugin" in varying_traits and plugin
-            else case["algorithm"]
+            (
+                f"{plugin}:{case['algorithm']}"
+                if " plugin" in varying_traits and plugin
+                else case["algorithm"]
+            )
         ]
         if " isa" in varying_traits:
             parts.append(case["isa"])

@@ -17,7 +17,7 @@ struct NamedValue {
   std::string_view name;
 };
 template <class Value>  // clang before 17 needs the guide spelled out
-NamedValue(Value, std::string_view)->NamedValue<Value>;
+NamedValue(Value, std::string_view) -> NamedValue<Value>;
 
 /// Values with their names, for lookup in both directions.
 template <class Value, std::size_t size>

@@ -63,7 +63,7 @@ class SceneEditor {
   void change(std::string_view verb, const std::function<void(AuthoredBody&)>& edit);
   /// Sets a property of the selected bodies.
   template <class Value>
-  void set(std::string_view verb, Value AuthoredBody::*property,
+  void set(std::string_view verb, Value AuthoredBody::* property,
            const std::type_identity_t<Value>& value) {
     change(verb, [&](AuthoredBody& body) { body.*property = value; });
   }
@@ -116,7 +116,7 @@ class SceneEditor {
   };
 
   template <class Value>
-  void changeScene(std::string name, Value AuthoredScene::*property, Value value,
+  void changeScene(std::string name, Value AuthoredScene::* property, Value value,
                    const std::string& fault);
   void addCopies(std::string_view verb, std::vector<AuthoredBody> bodies);
   /// Adds the bodies in `absent` under the ids, or removes the bodies with these ids if it is

@@ -81,6 +81,6 @@ struct CaseColumn {
 /// All columns, in CSV order.
 const std::vector<CaseColumn>& caseColumns();
 /// The columns of a table, from the left.
-std::vector<const CaseColumn*> caseColumns(int ColumnDisplay::*place);
+std::vector<const CaseColumn*> caseColumns(int ColumnDisplay::* place);
 
 }  // namespace broadmark
