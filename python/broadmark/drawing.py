@@ -1,7 +1,6 @@
 """Reproducible figures, and the styles of algorithms in them. The same input gives the same bytes.
 
-The colour shows the family, the marker the algorithm; the paper's algorithms have the paper's
-markers. Figures are made without pyplot and within a style context, so no display is needed and no
+Colour and marker show the algorithm, as assets/palette.txt states them. Figures are made without pyplot and within a style context, so no display is needed and no
 global setting changes.
 """
 
@@ -10,7 +9,7 @@ from __future__ import annotations
 import os
 import pathlib
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,8 +21,7 @@ from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullForma
 
 from broadmark.errors import InputError
 from broadmark.files import atomic_write, is_standard_output
-from broadmark.palette import LIGHT, curves_of, light
-from broadmark.paper.algorithms import BY_ID
+from broadmark.palette import LIGHT, light, look_of
 
 #: Formats with the metadata that keeps dates and versions out of the files.
 FORMATS: dict[str, dict[str, Any]] = {
@@ -137,29 +135,16 @@ class Style:
         )
 
 
-#: Markers of algorithms that are not in the paper.
-OWN_MARKERS = ["P", "X", "*", "h", "<", ">", "8", "H"]
+#: The markers, by the index of a symbol (palette.SYMBOLS).
+MARKERS = ["o", "s", "^", "D", "*", "P"]
 
 
-def styles(families: Mapping[str, str]) -> dict[str, Style]:
-    """The style of each algorithm, from a mapping of ids to families. A multi-threaded variant (-mt)
-    has the style of the single-threaded variant, as in the paper."""
-    curves = curves_of(families.values())
-    own = sorted({_stem(id_) for id_ in families if id_ not in BY_ID})
-    styles_by_id = {}
-    for id_, family in families.items():
-        colour = LIGHT["curve"][curves[family]]
-        if id_ in BY_ID:
-            paper = BY_ID[id_]
-            styles_by_id[id_] = Style(colour, paper.marker, paper.filled, paper.line)
-        else:
-            marker = OWN_MARKERS[own.index(_stem(id_)) % len(OWN_MARKERS)]
-            styles_by_id[id_] = Style(colour, marker, True, "--" if id_.startswith("gpu-") else "-")
-    return styles_by_id
-
-
-def _stem(algorithm: str) -> str:
-    return algorithm.removesuffix("-mt")
+def style(algorithm: str) -> Style:
+    """The style of an algorithm, the same in every figure: filled markers for the multi-threaded variant
+    (-mt), dashes on a device."""
+    curve, symbol = look_of(algorithm)
+    line = "--" if algorithm.startswith(("gpu-", "b3-")) else "-"
+    return Style(LIGHT["curve"][curve], MARKERS[symbol], algorithm.endswith("-mt"), line)
 
 
 def log_scale(axes: Any, name: str, unit: str = "") -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Iterable
+import zlib
 
 _MODULE = pathlib.Path(__file__).resolve()
 _CANDIDATES = [_MODULE.with_name("palette.txt"), _MODULE.parents[2] / "assets/palette.txt"]
@@ -12,14 +12,20 @@ _CANDIDATES = [_MODULE.with_name("palette.txt"), _MODULE.parents[2] / "assets/pa
 LIGHT: dict[str, list[str]] = {}
 DARK: dict[str, list[str]] = {}
 
-#: The index of each algorithm family's curve colour.
-CURVES: dict[str, int] = {}
+#: The indices of each listed algorithm's curve colour and symbol, without -mt.
+LOOKS: dict[str, tuple[int, int]] = {}
+
+#: The number of symbols, all well apart: circle, square, triangle, diamond, star, cross.
+SYMBOLS = 6
 
 for _line in next(path for path in _CANDIDATES if path.exists()).read_text("utf-8").splitlines():
     if _line and not _line.startswith("#"):
         _name, _light, _dark, *_meaning = _line.split(maxsplit=3)
         if _name == "curve":
-            CURVES |= dict.fromkeys(_meaning[0].split(", "), len(LIGHT.get("curve", [])))
+            LOOKS |= {
+                _algorithm: (len(LIGHT.get("curve", [])), _symbol)
+                for _symbol, _algorithm in enumerate(_meaning[0].split(", "))
+            }
         LIGHT.setdefault(_name, []).append(f"#{_light}")
         DARK.setdefault(_name, []).append(f"#{_dark}")
 
@@ -30,18 +36,14 @@ def light(name: str) -> str:
     return colour
 
 
-def curves_of(families: Iterable[str]) -> dict[str, int]:
-    """The index of each family's curve colour. Families that the palette does not list share the
-    colours that the others leave unused."""
-    names = sorted(set(families))
-    used = {CURVES[name] for name in names if name in CURVES}
-    indices = range(len(LIGHT["curve"]))
-    unused = [i for i in indices if i not in used] or list(indices)
-    unlisted = [name for name in names if name not in CURVES]
-    return {
-        name: CURVES[name] if name in CURVES else unused[unlisted.index(name) % len(unused)]
-        for name in names
-    }
+def look_of(algorithm: str) -> tuple[int, int]:
+    """The indices of an algorithm's curve colour and symbol, the same in every figure. A multi-threaded
+    variant has those of the single-threaded one; an algorithm that the palette does not list, those that
+    its name hashes to."""
+    name = algorithm.removesuffix("-mt")
+    hashed = zlib.crc32(name.encode())
+    count = len(LIGHT["curve"])
+    return LOOKS.get(name, (hashed % count, hashed // count % SYMBOLS))
 
 
 def css(colours: dict[str, list[str]]) -> str:

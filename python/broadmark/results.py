@@ -28,6 +28,9 @@ COLUMNS: list[dict[str, Any]] = json.loads(
     (pathlib.Path(__file__).parent / "columns.json").read_text("utf-8")
 )
 
+#: The family of algorithms that find no pairs: their times are no rivals.
+SELF_CHECK_FAMILY = "self-check"
+
 #: The separately timed phases of a frame.
 PHASES = ["update_objects", "clean_cache", "update_structures", "search_overlaps"]
 TRANSFERS = ["upload", "download"]  #: included in the phases; only for algorithms on a device

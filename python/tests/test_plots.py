@@ -15,8 +15,8 @@ import pytest
 from synthetic_results import case, paper_cases, write
 
 import broadmark
-from broadmark.drawing import SETTINGS, styles
-from broadmark.palette import CURVES, curves_of
+from broadmark.drawing import MARKERS, SETTINGS, style
+from broadmark.palette import LOOKS, SYMBOLS
 from broadmark.paper.algorithms import BY_ID, PARALLEL, SCENES, SINGLE
 from broadmark.paper.figures import FigureOptions, curves, fastest_single, figure
 from broadmark.paper.times import times_by_machine
@@ -112,27 +112,21 @@ def test_the_axis_range_follows_the_results_unless_full(tmp_path: pathlib.Path) 
     assert (log.get_xscale(), log.get_yscale()) == ("log", "log") and log.get_ylim()[1] == 0.55
 
 
-def test_other_algorithms_have_their_own_styles(tmp_path: pathlib.Path) -> None:
-    own = ["kd-mt", "grid2d-sap", "mine", "yours-mt", "gpu-grid"]
-    found = styles(dict.fromkeys(own, "Any"))
-    papers = {(algorithm.colour, algorithm.marker) for algorithm in BY_ID.values()}
-    others = {(found[id_].colour, found[id_].marker) for id_ in own}
-    assert len(others) == len(own) and not papers & others
-    cases = [case("Brownian", 1000, id_, 0.1) for id_ in own]
-    single, parallel = drawn(write(tmp_path / "a.json", cases), FigureOptions()).axes
-    assert labels(single) == ["grid2d-sap", "mine"]
-    assert set(labels(parallel)) >= {"kd-mt", "yours-mt", "gpu-grid"}
-
-
-def test_unlisted_families_have_unused_curve_colours() -> None:
-    rows = re.findall(r"^   \S+ +(\S+(?: \S+)*)", call("list", "algorithms"), re.MULTILINE)
-    assert set(rows) - {"self-check"} <= CURVES.keys()
-    assert curves_of(["new", "KD", "Grid SAP", "Embree"]) == {
-        "Grid SAP": CURVES["Grid SAP"],
-        "KD": CURVES["KD"],
-        "Embree": CURVES["KD"],
-        "new": 2,
-    }
+def test_every_algorithm_has_its_own_style(tmp_path: pathlib.Path) -> None:
+    ids = re.findall(r"^   ([\w-]+) +(?!self-check)\S", call("list", "algorithms"), re.MULTILINE)
+    assert len(ids) > 20 and {id_ for id_ in LOOKS} <= set(ids)
+    assert set(ids) - {"none", "time-validator"} <= {*LOOKS, *(f"{id_}-mt" for id_ in LOOKS)}
+    assert len(set(LOOKS.values())) == len(LOOKS)
+    assert max(symbol for _, symbol in LOOKS.values()) < SYMBOLS == len(MARKERS)
+    single, parallel = style("kd"), style("kd-mt")
+    assert (single.colour, single.marker) == (parallel.colour, parallel.marker)
+    assert not single.filled and parallel.filled
+    # That of an algorithm that the palette does not list is the same, whoever else is there.
+    assert style("mine") == style("mine") and style("mine") != style("yours")
+    cases = [case("Brownian", 1000, id_, 0.1) for id_ in ("kd-mt", "mine", "yours-mt", "gpu-grid")]
+    single_panel, parallel_panel = drawn(write(tmp_path / "a.json", cases), FigureOptions()).axes
+    assert labels(single_panel) == ["mine"]
+    assert set(labels(parallel_panel)) >= {"kd-mt", "yours-mt", "gpu-grid"}
 
 
 def test_the_fastest_algorithm_is_chosen_at_the_largest_size(tmp_path: pathlib.Path) -> None:
@@ -199,7 +193,7 @@ def test_phases_require_a_single_case(
     plot = ["plot", "phases", small_results / "results.json", "-o", tmp_path / "plot.svg"]
     single = ["--scene", "brownian", "--algorithm", "kd", "--objects", "100"]
     status, _, error = command(*plot)
-    assert status == 2 and "20 are left" in error and "--filter" in error
+    assert status == 2 and "16 are left" in error and "--filter" in error
     assert command(*plot, *single)[0] == 0
     assert "search overlaps" in (tmp_path / "plot.svg").read_text()
     status, _, error = command(*plot, *single, "--log")
@@ -284,9 +278,43 @@ def test_every_row_is_named_and_no_panel_is_empty(kind: str, tmp_path: pathlib.P
         "Gravity cubes, 1,000 bodies",
     ]
     named = [[text.get_text() for text in axes.get_yticklabels()] for axes in upper.axes]
-    assert named[0] == ["bf", "kd"] and named[2] == ["sap", "cgal", "kd"]
+    assert named[0] == ["bf", "kd"] and named[2] == ["sap", "cgal", "kd"]  # all as fast
     rows = [int(axes.get_ylim()[0]) + 1 for axes in upper.axes]
     assert rows == [2, 2, 3]
+
+
+def test_rows_are_sorted_by_the_time_at_the_largest_size(tmp_path: pathlib.Path) -> None:
+    times = {"kd": (0.1, 0.4), "sap": (0.2, 0.3), "bf": (0.01, None), "tide": (0.3, 0.2)}
+    cases = [
+        case("Brownian", n, id_, seconds)
+        for id_, both in times.items()
+        for n, seconds in zip((1000, 2000), both)
+        if seconds
+    ]
+    cases.append(case("Brownian", 2000, "none", 1e-7))
+    results = broadmark.read_results(write(tmp_path / "a.json", cases))
+    table = timed_cases(results, log=False, note="")
+    assert list(table.rows_of("Brownian cubes")) == ["tide", "sap", "kd", "bf"]
+
+
+def test_plots_are_divided_into_pages(tmp_path: pathlib.Path, command: Any) -> None:
+    cases = [
+        case(scene, 1000 * 2**k, f"a{i}", 0.01)
+        for scene in ("Brownian", "Gravity")
+        for k in range(7 if scene == "Brownian" else 3)
+        for i in range(30)
+    ]
+    file = write(tmp_path / "a.json", cases)
+    assert command("plot", "bars", file, "-o", tmp_path / "plot.svg")[0] == 0
+    pages = sorted(path.name for path in tmp_path.glob("*.svg"))
+    assert pages == [
+        "plot-Brownian-cubes-from-1000.svg",
+        "plot-Brownian-cubes-from-64000.svg",
+        "plot-Gravity-cubes.svg",
+    ]
+    for page in pages:
+        size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', (tmp_path / page).read_text())
+        assert size and float(size[1]) < 595 and float(size[2]) < 842  # A4
 
 
 def test_the_strip(tmp_path: pathlib.Path, command: Any) -> None:

@@ -16,7 +16,7 @@ from browser import Page, start_browser  # skips these tests without selenium
 from report_results import case, standard_cases, write_results
 
 import broadmark
-from broadmark.palette import CURVES, DARK, LIGHT
+from broadmark.palette import DARK, LIGHT, LOOKS
 
 from selenium.webdriver.common.keys import Keys
 
@@ -406,13 +406,13 @@ def test_dark_theme_by_system_and_by_button(opened: Page, standard: pathlib.Path
     assert opened.js(colour) == light
 
 
-def test_curves_have_the_colours_of_their_families(opened: Page, standard: pathlib.Path) -> None:
+def test_curves_have_the_colours_of_their_algorithms(opened: Page, standard: pathlib.Path) -> None:
     for dark, colours in ((False, LIGHT), (True, DARK)):
         opened.show(standard, dark=dark)
         opened.section("scaling")
         opened.wait("return document.querySelector('#scaling .series')")
         symbol = opened.find('#scaling .series[data-variant="kd"] .symbol')
-        part = [int(colours["curve"][CURVES["KD"]][i : i + 2], 16) for i in (1, 3, 5)]
+        part = [int(colours["curve"][LOOKS["kd"][0]][i : i + 2], 16) for i in (1, 3, 5)]
         assert opened.js("return getComputedStyle(arguments[0]).stroke", symbol) == (
             "rgb({}, {}, {})".format(*part)
         )

@@ -87,12 +87,11 @@ TEST_P(ThemeTest, CurvesAreToldApartByColourBlindEyesAndReadAsNames) {
   }
 }
 
-TEST_P(ThemeTest, AFamilyHasItsColourAndTheOthersWhatIsLeft) {
+TEST_P(ThemeTest, AnAlgorithmHasItsColourAndTheOthersWhatIsLeft) {
   const auto& curves = ui.theme.curve;
-  const auto [kd, place] = kFamilyCurves[2];
-  const std::vector<std::string_view> families = {kd, "unheard of", kd, kFamilyCurves[0].first};
-  const std::vector<Rgb> colours = curveColours(families, ui.theme);
-  EXPECT_EQ(colours, (std::vector<Rgb>{curves[place], curves[2], curves[3], curves[0]}));
+  const std::vector<std::string_view> algorithms = {"kd-mt", "unheard of", "kd", "grid-sap"};
+  const std::vector<Rgb> colours = curveColours(algorithms, ui.theme);
+  EXPECT_EQ(colours, (std::vector<Rgb>{curves[1], curves[2], curves[3], curves[0]}));
   const std::vector<Rgb> many =
       curveColours(std::vector<std::string_view>(2 * curves.size()), ui.theme);
   for (std::size_t i = 0; i < many.size(); ++i) EXPECT_EQ(many[i], curves[i % curves.size()]);

@@ -39,11 +39,11 @@ class CasePlots : PanelContext {
         rows_of_curves.push_back({curve.row});
       }
     }
-    std::vector<std::string_view> families;
+    std::vector<std::string_view> algorithms;
     for (const auto& rows : rows_of_curves) {
-      families.emplace_back(results.rows()[rows.front()].result.family);
+      algorithms.emplace_back(results.rows()[rows.front()].result.algorithm);
     }
-    const std::vector<Rgb> colours = curveColours(families, palette);
+    const std::vector<Rgb> colours = curveColours(algorithms, palette);
     std::vector<std::optional<Rgb>> by_row(results.rows().size());
     for (std::size_t i = 0; i < colours.size(); ++i) {
       for (const std::size_t row : rows_of_curves[i]) by_row[row] = colours[i];

@@ -8,11 +8,11 @@
 namespace broadmark {
 
 std::vector<Rgb> PanelContext::trackColours() const {
-  std::vector<std::string_view> families;
+  std::vector<std::string_view> algorithms;
   for (const TrackReport& track : progress->tracks) {
-    families.emplace_back(track.spec.test_case.algorithm.family);
+    algorithms.emplace_back(track.spec.test_case.algorithm.id);
   }
-  return curveColours(families, ui.theme);
+  return curveColours(algorithms, ui.theme);
 }
 
 PlotResult PanelContext::plotFrames(const char* name, const std::vector<PlotCurve>& curves,

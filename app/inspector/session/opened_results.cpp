@@ -122,7 +122,8 @@ std::vector<ScalingCurve> OpenedResults::scalingCurves(Phase phase) const {
   for (const std::size_t i : rows) {
     const CaseResult& result = rows_[i].result;
     const double seconds = result.meanSeconds(phase).value_or(0);
-    if (result.status != Status::ok || !result.isComplete() || seconds <= 0) continue;
+    if (result.status != Status::ok || !result.isComplete() || seconds <= 0 || isSelfCheck(result))
+      continue;
     const std::string scene = sceneOf(rows_[i]);
     const std::string case_name = caseNameOf(result);
     auto curve = std::ranges::find_if(curves, [&](const ScalingCurve& other) {

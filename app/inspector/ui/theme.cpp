@@ -83,14 +83,17 @@ ImU32 colour(Rgb rgb, float alpha) {
   return ImGui::ColorConvertFloat4ToU32(colourVector(rgb, alpha));
 }
 
-std::vector<Rgb> curveColours(std::span<const std::string_view> families, const Palette& palette) {
-  std::vector<Rgb> colours(families.size());
+std::vector<Rgb> curveColours(std::span<const std::string_view> algorithms,
+                              const Palette& palette) {
+  std::vector<Rgb> colours(algorithms.size());
   std::vector<std::size_t> others;
   std::array<bool, std::tuple_size_v<decltype(Palette::curve)>> used{};
-  for (std::size_t i = 0; i < families.size(); ++i) {
-    const auto* const own = std::ranges::find(kFamilyCurves, families[i],
+  for (std::size_t i = 0; i < algorithms.size(); ++i) {
+    std::string_view algorithm = algorithms[i];
+    if (algorithm.ends_with("-mt")) algorithm.remove_suffix(3);
+    const auto* const own = std::ranges::find(kAlgorithmCurves, algorithm,
                                               [](const auto& entry) { return entry.first; });
-    if (own == std::end(kFamilyCurves) || used[own->second]) {
+    if (own == std::end(kAlgorithmCurves) || used[own->second]) {
       others.push_back(i);
     } else {
       used[own->second] = true;

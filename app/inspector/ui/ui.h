@@ -213,9 +213,9 @@ inline constexpr float kSplitterSize = 5;  ///< units
 /// Begins a window with this rectangle.
 void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags = 0);
 
-/// Returns the colours of a plot's curves, by the families of their algorithms: the first curve of
-/// a family gets the family's colour, the others get unused ones.
-std::vector<Rgb> curveColours(std::span<const std::string_view> families, const Palette& palette);
+/// Returns the colours of a plot's curves, by the ids of their algorithms: the first curve of an
+/// algorithm gets the algorithm's colour unless another has it already, the others get unused ones.
+std::vector<Rgb> curveColours(std::span<const std::string_view> algorithms, const Palette& palette);
 
 /// Sets colours and sizes of the current Dear ImGui context, and `ui`'s theme and scale.
 void applyTheme(Ui& ui, bool dark, float scale);

@@ -1,19 +1,22 @@
 """Draws a plot of results: bars, violins, lines, scaling, memory, phases, pairs.
 
-Only complete cases without wrong answers are shown; the command reports the others.
+Only complete cases without wrong answers are shown; the command reports the others. Bars and violins
+that do not fit a page are drawn on several, in files named FILE-SCENE.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 
 from broadmark import selection
-from broadmark.drawing import check_format, draw
+from broadmark.drawing import check_format, draw_pages
 from broadmark.errors import InputError
 from broadmark.files import report_written
-from broadmark.plots import KINDS
-from broadmark.plots.cases import timed_cases
+from broadmark.plots import KINDS, PAGED
+from broadmark.plots.cases import omitted, timed_cases
+from broadmark.plots.panels import pages_of
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -40,10 +43,10 @@ def main(options: argparse.Namespace) -> None:
     if not len(results.cases):
         raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
     cases = timed_cases(results, log=options.log, note=machine)
-    missing = results.cases.drop(cases.table.index)
-    if len(missing):
-        counts = missing["status"].replace("ok", "incomplete").value_counts()
-        summary = ", ".join(f"{count} {status}" for status, count in counts.items())
-        print(f"cases without a time are not shown: {summary}", file=sys.stderr)
-    draw([options.output], lambda: KINDS[options.kind](cases))
-    report_written(options.output)
+    if reasons := omitted(results.cases):
+        print(f"cases without a time are not shown: {reasons}", file=sys.stderr)
+    function = KINDS[options.kind]
+    pages = pages_of(cases) if options.kind in PAGED else [("", cases)]
+    files = draw_pages(options.output, [(name, partial(function, page)) for name, page in pages])
+    for file in files:
+        report_written(file)

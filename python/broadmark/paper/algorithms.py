@@ -1,4 +1,4 @@
-"""The paper's scenes and algorithms with our ids and the paper's styles, and its Table 2."""
+"""The paper's scenes and algorithms with our ids, and its Table 2."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ import csv
 import functools
 import pathlib
 from dataclasses import dataclass, field
-
-from broadmark.palette import light
 
 #: The time per frame up to which larger sizes are shown.
 CAP_SECONDS = 0.5
@@ -41,42 +39,33 @@ class Algorithm:
 
     name: str
     id: str  #: our id
-    colour: str  #: by the origin of the implementation
-    marker: str  #: by the algorithm
-    filled: bool  #: by the variant
     panel: str  #: SINGLE or PARALLEL
-    line: str = "-"
     #: The original's values of parameters that have another default here.
     settings: dict[str, float] = field(default_factory=dict)
 
 
 SINGLE, PARALLEL = "single-threaded", "multi-threaded and GPU"
 
-ORIGINAL = light("paper_original")
-BULLET2 = light("paper_bullet2")
-BULLET3 = light("paper_bullet3")
-INDEPENDENT = light("paper_independent")
-
 #: In the order of Table 2.
 ALGORITHMS = [
-    Algorithm("BF ST", "bf", ORIGINAL, "o", False, SINGLE),
-    Algorithm("BF MT", "bf-simd-mt", ORIGINAL, "o", False, PARALLEL),
-    Algorithm("SAP ST", "sap", ORIGINAL, "^", False, SINGLE),
-    Algorithm("SAP MT", "sap-simd-mt", ORIGINAL, "^", False, PARALLEL),
-    Algorithm("Grid BF ST", "grid-bf", ORIGINAL, "s", False, SINGLE),
-    Algorithm("Grid BF MT", "grid-bf-mt", ORIGINAL, "s", False, PARALLEL),
-    Algorithm("Grid SAP ST", "grid-sap", ORIGINAL, "s", True, SINGLE),
-    Algorithm("Grid SAP MT", "grid-sap-mt", ORIGINAL, "s", True, PARALLEL),
-    Algorithm("AxisSweep", "axis-sweep", BULLET2, "^", True, SINGLE),
-    Algorithm("DBVT F", "dbvt-f", BULLET2, "D", False, SINGLE),
-    Algorithm("DBVT D", "dbvt-d", BULLET2, "D", True, SINGLE),
-    Algorithm("Tracy ST", "tracy", INDEPENDENT, "v", True, SINGLE),
-    Algorithm("Tracy MT", "tracy-mt", INDEPENDENT, "v", True, PARALLEL),
-    Algorithm("CGAL", "cgal", light("paper_cgal"), "p", True, SINGLE),
-    Algorithm("KD", "kd", light("paper_kd"), "d", True, SINGLE, "-", {"margin": 0.01}),
-    Algorithm("GPU SAP", "b3-sap", BULLET3, "^", True, PARALLEL, "--"),
-    Algorithm("GPU LBVH", "b3-lbvh", BULLET3, "s", True, PARALLEL, "--"),
-    Algorithm("GPU Grid", "b3-grid", BULLET3, "o", True, PARALLEL, "--"),
+    Algorithm("BF ST", "bf", SINGLE),
+    Algorithm("BF MT", "bf-simd-mt", PARALLEL),
+    Algorithm("SAP ST", "sap", SINGLE),
+    Algorithm("SAP MT", "sap-simd-mt", PARALLEL),
+    Algorithm("Grid BF ST", "grid-bf", SINGLE),
+    Algorithm("Grid BF MT", "grid-bf-mt", PARALLEL),
+    Algorithm("Grid SAP ST", "grid-sap", SINGLE),
+    Algorithm("Grid SAP MT", "grid-sap-mt", PARALLEL),
+    Algorithm("AxisSweep", "axis-sweep", SINGLE),
+    Algorithm("DBVT F", "dbvt-f", SINGLE),
+    Algorithm("DBVT D", "dbvt-d", SINGLE),
+    Algorithm("Tracy ST", "tracy", SINGLE),
+    Algorithm("Tracy MT", "tracy-mt", PARALLEL),
+    Algorithm("CGAL", "cgal", SINGLE),
+    Algorithm("KD", "kd", SINGLE, {"margin": 0.01}),
+    Algorithm("GPU SAP", "b3-sap", PARALLEL),
+    Algorithm("GPU LBVH", "b3-lbvh", PARALLEL),
+    Algorithm("GPU Grid", "b3-grid", PARALLEL),
 ]
 
 BY_NAME = {algorithm.name: algorithm for algorithm in ALGORITHMS}

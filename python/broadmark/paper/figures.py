@@ -14,7 +14,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from broadmark.drawing import Style, log_scale, styles
+from broadmark.drawing import log_scale, style
 from broadmark.palette import light
 from broadmark.paper.algorithms import (
     BY_ID,
@@ -27,11 +27,6 @@ from broadmark.paper.algorithms import (
     table2,
 )
 from broadmark.paper.times import Measurement, Times
-
-PAPER_STYLES = {
-    algorithm.id: Style(algorithm.colour, algorithm.marker, algorithm.filled, algorithm.line)
-    for algorithm in BY_ID.values()
-}
 
 #: The size of the axes, nearly, and the distance between names, in points.
 AXES_SIZE = (235, 200)
@@ -124,10 +119,6 @@ def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
     """Figure 5, 6 or 7."""
     measured_curves = curves(times, scene.name)
     reference_curves = paper_curves(scene.name, options.log) if options.paper else []
-    style_of = {
-        **PAPER_STYLES,
-        **styles({id_: times.families[id_] for id_ in times.other_algorithms}),
-    }
     result = Figure(figsize=(9.8, 4.6), layout="constrained")
     result.suptitle(f"{scene.title}: mean time per frame")
     panels = result.subplots(1, 2, sharey=True)
@@ -136,11 +127,11 @@ def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
         axes.set_title(panel[0].upper() + panel[1:], loc="left", pad=38 if options.paper else None)
         axes.set_xlabel("thousands of objects")
         for curve in _panel_curves(reference_curves, panel):
-            style = {**style_of[curve.algorithm].line_properties(), "marker": "", "linewidth": 2.2}
-            axes.plot(*zip(*curve.points), **style, alpha=0.25, zorder=1.5)
+            faint = {**style(curve.algorithm).line_properties(), "marker": "", "linewidth": 2.2}
+            axes.plot(*zip(*curve.points), **faint, alpha=0.25, zorder=1.5)
         drawn = _panel_curves(measured_curves, panel)
         for curve in drawn:
-            _draw(axes, curve, style_of[curve.algorithm])
+            _draw(axes, curve)
         if reference_curves:
             axes.plot(
                 [],
@@ -160,7 +151,7 @@ def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
             handlelength=2.6,
         )
         _set_axes(axes, measured_curves, options)
-        _name_ends(axes, _panel_curves(reference_curves, panel), style_of)
+        _name_ends(axes, _panel_curves(reference_curves, panel))
     panels[0].set_ylabel("time per frame" if options.log else "seconds per frame")
     notes = [times.machine, *times.conditions]
     result.supxlabel("; ".join(notes), fontsize=6.5, color=light("faint"))
@@ -174,16 +165,17 @@ def _panel_curves(all_curves: list[Curve], panel: str) -> list[Curve]:
     return drawn + ([best] if best else [])
 
 
-def _draw(axes: Any, curve: Curve, style: Style) -> None:
+def _draw(axes: Any, curve: Curve) -> None:
+    own = style(curve.algorithm)
     x, y = zip(*curve.points) if curve.points else ((), ())
-    axes.plot(x, y, **style.line_properties(), label=curve.label)
+    axes.plot(x, y, **own.line_properties(), label=curve.label)
     if curve.timeout:
         last = curve.points[-1:] + [curve.timeout]
-        axes.plot(*zip(*last), color=style.colour, linestyle=":", linewidth=0.9)
-        axes.plot(*curve.timeout, "x", color=style.colour, markersize=6, zorder=3)
+        axes.plot(*zip(*last), color=own.colour, linestyle=":", linewidth=0.9)
+        axes.plot(*curve.timeout, "x", color=own.colour, markersize=6, zorder=3)
 
 
-def _name_ends(axes: Any, named: list[Curve], style_of: dict[str, Style]) -> None:
+def _name_ends(axes: Any, named: list[Curve]) -> None:
     """Names the paper's curves where they leave the axes: above these, or to the right."""
     above, right = [], []
     for curve in named:
@@ -199,7 +191,7 @@ def _name_ends(axes: Any, named: list[Curve], style_of: dict[str, Style]) -> Non
         last = -math.inf
         for end, curve in sorted(ends, key=lambda entry: entry[0]):
             last = max(end * size, last + NAME_DISTANCE)  # no name covers another
-            colour = style_of[curve.algorithm].colour
+            colour = style(curve.algorithm).colour
             axes.annotate(curve.label, fontsize=6, color=colour, alpha=0.8, **place(last / size))
 
 

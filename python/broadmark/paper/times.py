@@ -14,11 +14,10 @@ import pandas as pd
 
 from broadmark.errors import InputError
 from broadmark.paper.algorithms import ALGORITHMS, BY_ID, CAP_SECONDS, SCENES
-from broadmark.results import Results, commit_name
+from broadmark.results import SELF_CHECK_FAMILY, Results, commit_name
 from broadmark.selection import RECORDING, best_variants, by_machine
 
 SCENE_NAMES = [scene.name for scene in SCENES]
-SELF_CHECK_FAMILY = "self-check"
 
 #: Half the width of a time's 95 % interval, relative to it: at least, and if it was measured once.
 MIN_NOISE, NOISE_OF_ONE = 0.02, 0.1

@@ -23,3 +23,6 @@ KINDS: dict[str, Callable[[Cases], Figure]] = {
     "phases": phases,
     "pairs": pairs,
 }
+
+#: The kinds that are divided into pages (panels.pages_of).
+PAGED = ["bars", "violins"]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from broadmark.drawing import log_scale
 from broadmark.palette import light
 from broadmark.plots.cases import Cases
-from broadmark.plots.panels import by_scene_and_size, label_rows
+from broadmark.plots.panels import label_rows, with_rows
 
 
 def bars(cases: Cases) -> Figure:
@@ -50,12 +50,8 @@ def bars(cases: Cases) -> Figure:
             )
         label_rows(axes, list(rows))
 
-    return by_scene_and_size(
+    return with_rows(
         cases,
         paint,
-        size=(2.4, lambda scene: 0.6 + 0.15 * len(cases.rows_of(scene))),
         x="milliseconds",
-        y="",
-        legend=False,
-        sharey="row",
     )

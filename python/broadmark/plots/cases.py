@@ -7,10 +7,10 @@ from typing import Any
 
 import pandas as pd
 
-from broadmark.drawing import Style, styles
+from broadmark.drawing import Style, style
 from broadmark.errors import InputError
 from broadmark.paper.algorithms import BY_ID
-from broadmark.results import Results
+from broadmark.results import SELF_CHECK_FAMILY, Results
 from broadmark.selection import RECORDING, require_unique
 
 
@@ -30,17 +30,20 @@ class Cases:
     @property
     def styles(self) -> dict[str, Style]:
         """The styles by label. Variants share the style of their algorithm."""
-        found = styles(dict(zip(self.table["algorithm"], self.table["family"])))
-        algorithms = dict(zip(self.table["label"], self.table["algorithm"]))
         return {
-            label: found[algorithm].lighter() if algorithm.endswith("-mt") else found[algorithm]
-            for label, algorithm in algorithms.items()
+            label: style(algorithm).lighter() if algorithm.endswith("-mt") else style(algorithm)
+            for label, algorithm in zip(self.table["label"], self.table["algorithm"])
         }
 
     def rows_of(self, panel: str) -> dict[str, int]:
-        """The row of each label among those of a scene, in plots with a row per label."""
-        labels = self.table.loc[self.table["panel"] == panel, "label"].unique()
-        return {label: row for row, label in enumerate(labels)}
+        """The row of each label among those of a scene, in plots with a row per label: by the time at the
+        largest number of bodies that it has, the largest numbers first."""
+        scene = self.table[self.table["panel"] == panel]
+        largest = scene.sort_values("objects", kind="stable").drop_duplicates("label", keep="last")
+        order = largest.sort_values(
+            ["objects", "seconds_per_frame"], ascending=[False, True], kind="stable"
+        )
+        return {label: row for row, label in enumerate(order["label"])}
 
     def mean_frames(self, case: int) -> pd.DataFrame:
         """The frames of a case, averaged over the repetitions."""
@@ -51,13 +54,13 @@ class Cases:
 
 
 def timed_cases(results: Results, *, log: bool, note: str) -> Cases:
-    """The cases with a time: complete and without wrong answers."""
+    """The cases with a time: complete and without wrong answers, but not self-checks, whose times are no
+    rivals."""
     cases = results.cases
-    ok = (cases["status"] == "ok") & cases["complete"] & cases["seconds_per_frame"].notna()
+    ok = _reasons(cases) == ""
     if not ok.any():
-        counts = cases["status"].where(~(cases["status"] == "ok"), "incomplete").value_counts()
-        summary = ", ".join(f"{count} {status}" for status, count in counts.items())
-        raise InputError(f"no case with a time is left: {summary}")
+        reasons = omitted(cases) or "only self-checks"
+        raise InputError(f"no case with a time is left: {reasons}")
     table = cases[ok]
     table = table.assign(
         label=_labels(table), panel=table["scene"] + " " + table["object_type"].str.lower()
@@ -65,6 +68,20 @@ def timed_cases(results: Results, *, log: bool, note: str) -> Cases:
     require_unique(table, [*RECORDING, "label"])
     order = [_rank(row) for _, row in table.iterrows()]
     return Cases(results, table.iloc[sorted(range(len(order)), key=order.__getitem__)], log, note)
+
+
+def omitted(cases: pd.DataFrame) -> str:
+    """The reasons why `timed_cases` omits cases, with their numbers; "" if it omits none but
+    self-checks."""
+    counts = _reasons(cases).value_counts().drop(["", SELF_CHECK_FAMILY], errors="ignore")
+    return ", ".join(f"{count} {reason}" for reason, count in counts.items())
+
+
+def _reasons(cases: pd.DataFrame) -> pd.Series:
+    reasons = cases["status"].astype(object).replace("ok", "")
+    untimed = ~cases["complete"] | cases["seconds_per_frame"].isna()
+    reasons = reasons.mask((reasons == "") & untimed, "incomplete")
+    return reasons.mask(cases["family"] == SELF_CHECK_FAMILY, SELF_CHECK_FAMILY)
 
 
 def _labels(table: pd.DataFrame) -> pd.Series:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -15,9 +17,19 @@ from broadmark.plots.cases import Cases
 #: Draws the cases of a panel.
 Painter = Callable[[Any, pd.DataFrame], None]
 
-MAX_COLUMNS = 5
+MAX_COLUMNS = 3
+
+#: The size of a panel with rows: its width, and the height of a title and of a row, in inches.
+PANEL_WIDTH, TITLE_HEIGHT, ROW_HEIGHT = 2.4, 0.6, 0.15
+
+#: The height in inches up to which panels are on one page, A4 less its legend.
+PAGE_HEIGHT = 11.2
 
 NOTE = {"fontsize": 6.5, "color": light("faint")}
+
+
+def _height(cases: Cases, scene: str) -> float:
+    return TITLE_HEIGHT + ROW_HEIGHT * len(cases.rows_of(scene))
 
 
 def by_scene_and_size(cases: Cases, paint: Painter, **options: Any) -> Figure:
@@ -28,6 +40,28 @@ def by_scene_and_size(cases: Cases, paint: Painter, **options: Any) -> Figure:
         panels = [(f"{scene}, {n:,} bodies", own[own["objects"] == n]) for n in sizes]
         rows += [panels[i : i + MAX_COLUMNS] for i in range(0, len(panels), MAX_COLUMNS)]
     return _panels(cases, rows, paint, **options)
+
+
+def with_rows(cases: Cases, paint: Painter, x: str) -> Figure:
+    """`by_scene_and_size` with a row per algorithm."""
+    size = (PANEL_WIDTH, partial(_height, cases))
+    return by_scene_and_size(cases, paint, size=size, x=x, y="", legend=False, sharey="row")
+
+
+def pages_of(cases: Cases) -> list[tuple[str, Cases]]:
+    """The pages of `with_rows`, with names: one, or some for each scene."""
+    pages = []
+    height = 0.0
+    for scene, own in cases.table.groupby("panel", sort=False):
+        sizes = sorted(own["objects"].unique())
+        rows = max(1, int(PAGE_HEIGHT // _height(cases, scene)))
+        height += _height(cases, scene) * math.ceil(len(sizes) / MAX_COLUMNS)
+        for first in range(0, len(sizes), rows * MAX_COLUMNS):
+            page_sizes = sizes[first : first + rows * MAX_COLUMNS]
+            table = own[own["objects"].isin(page_sizes)]
+            name = scene if len(page_sizes) == len(sizes) else f"{scene} from {page_sizes[0]}"
+            pages.append((name, replace(cases, table=table)))
+    return pages if height > PAGE_HEIGHT else [("", cases)]
 
 
 def by_scene(cases: Cases, paint: Painter, *, stacked: bool = False, **options: Any) -> Figure:

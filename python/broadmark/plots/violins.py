@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from broadmark.palette import light
 from broadmark.plots.cases import Cases
-from broadmark.plots.panels import by_scene_and_size, label_rows
+from broadmark.plots.panels import label_rows, with_rows
 
 
 def violins(cases: Cases) -> Figure:
@@ -39,12 +39,8 @@ def violins(cases: Cases) -> Figure:
             axes.set_xlim(left=0)
         label_rows(axes, list(rows))
 
-    return by_scene_and_size(
+    return with_rows(
         cases,
         paint,
-        size=(2.4, lambda scene: 0.6 + 0.17 * len(cases.rows_of(scene))),
         x="milliseconds per frame",
-        y="",
-        legend=False,
-        sharey="row",
     )

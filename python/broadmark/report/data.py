@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from broadmark.palette import curves_of
+from broadmark.palette import look_of
 from broadmark.report import labels, rerun
 from broadmark.results import COLUMNS, Results, commit_name, is_unknown
 
@@ -79,7 +79,7 @@ def page_data(results: Results) -> dict[str, Any]:
         "recordings": recordings,
         "fields": COLUMNS,
         "columns": columns,
-        "curves": curves_of(map(str, cases.get("family", []))),
+        "looks": {name: look_of(name) for name in map(str, cases.get("algorithm", []))},
         "parameters": _varying_parameters(details),
         "wrong_frames": _wrong_frames(details),
     }

@@ -1,24 +1,21 @@
 // Scatter charts with logarithmic axes, lines, intervals, and gaps below the plot. A chart is a single
 // tab stop; arrow keys move between its points.
 
+// By the index of a symbol (palette.py).
 const kSymbols = [d3.symbolCircle, d3.symbolSquare, d3.symbolTriangle, d3.symbolDiamond, d3.symbolStar,
-                  d3.symbolWye, d3.symbolCross];
+                  d3.symbolCross];
 const kDashes = ["", "6 3", "2 3", "9 3 2 3"];
 let pinned = null;  // the variant selected in a legend
 
 const kHitRadius = 26;  // in pixels
 
-// Colour: family; symbol: algorithm within a colour; filled: several threads; dashes: parameters.
+// Colour and symbol: algorithm; filled: several threads; dashes: other variants.
 const styles = new Map();
 {
-  const algorithms = new Map(Object.values(data.curves).map((curve) => [curve, []]));
   const styleCounts = new Map();
   for (const testCase of cases) {
     if (styles.has(testCase.variant)) continue;
-    const curve = data.curves[testCase.family];
-    const familyAlgorithms = algorithms.get(curve);
-    if (!familyAlgorithms.includes(testCase.algorithm)) familyAlgorithms.push(testCase.algorithm);
-    const symbol = familyAlgorithms.indexOf(testCase.algorithm) % kSymbols.length;
+    const [curve, symbol] = data.looks[testCase.algorithm];
     const key = `${curve} ${symbol} ${testCase.threads > 1}`;
     styleCounts.set(key, (styleCounts.get(key) ?? -1) + 1);
     styles.set(testCase.variant, {
