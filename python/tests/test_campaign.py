@@ -426,6 +426,39 @@ def test_a_recording_is_split_from_the_shortest_sufficient_source(write: Any) ->
     assert [key for key, recording in planned.items() if recording.is_split] == [(10, 10), (80, 8)]
 
 
+def test_spans_and_repetitions_of_a_block(write: Any, launch: Any, tmp_path: pathlib.Path) -> None:
+    blocks = [
+        BLOCK | {"objects": 20, "frames": 9, "repetitions": 2},
+        BLOCK | {"objects": 20, "frames": 9, "span": [[1, 2], [6, 8]]},
+        BLOCK | {"objects": 30, "frames": 9, "span": [[3, 5]]},
+    ]
+    # A world whose bodies come and go, too.
+    blocks += [{"scenes": "fountain", "objects": 40, "frames": 9, "span": [[2, 3], [7, 9]]}]
+    status, _, error = launch(write(recordings=blocks, algorithm=["kd"]))
+    assert status == 0, error
+    cases = results(tmp_path)
+    table = cases.cases
+    found = dict(zip(zip(table["scene"], table["objects"], table["frames"]), table["repetitions"]))
+    assert found == {
+        ("Brownian", 20, 9): 2,
+        ("Brownian", 20, 4): 1,
+        ("Brownian", 30, 2): 1,
+        ("Fountain", 40, 4): 1,
+    }
+    assert set(table["status"]) == {"ok"}
+    pairs = {
+        (row.objects, row.frames): list(cases.details[row.case]["frame_counts"]["pairs"])
+        for row in table[table["scene"] == "Brownian"].itertuples()
+    }
+    whole = pairs[20, 9]  # of frames 1 to 9
+    assert pairs[20, 4] == [whole[1], whole[5], whole[6], whole[7]]
+    # The same command finds nothing to do; other repetitions are another campaign.
+    assert launch(write(recordings=blocks, algorithm=["kd"]))[0] == 0
+    assert len(results(tmp_path).cases) == 4
+    blocks[0]["repetitions"] = 3
+    assert "in another way" in launch(write(recordings=blocks, algorithm=["kd"]))[2]
+
+
 def test_jobs_depend_on_required_jobs(write: Any) -> None:
     class Empty:
         def is_baked(self, recording: Recording) -> bool:
@@ -498,6 +531,14 @@ def test_remaining_time_follows_finished_cases(write: Any) -> None:
             "recordings[0]: brownian cubes N80 F5 kinematic seed=1: requires a recording of 10 bodies",
         ),
         ({"recordings": [BLOCK | {"objects": 12, "split": True}]}, "12 is not a multiple of 8"),
+        *(
+            ({"recordings": [BLOCK | {"span": span}]}, "recordings[0].span: ")
+            for span in ([[3, 1]], [[0, 2], [2, 4]], [], [5], [[0, 1, 2]], "0:2", [[0, 9]])
+        ),
+        (
+            {"recordings": [BLOCK, BLOCK | {"repetitions": 2}]},
+            "recordings[1]: brownian cubes N20 F5 kinematic seed=1 is measured in another way",
+        ),
         (
             {"recordings": [BLOCK | {"objects": [5, 40]}, BLOCK | {"split": True, "objects": 40}]},
             "recordings[1]: brownian cubes N40 F5 kinematic seed=1 is split in this block and",

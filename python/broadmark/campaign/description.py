@@ -24,6 +24,10 @@ Value = str | int | float | bool
 Values = tuple[tuple[str, tuple[Value, ...]], ...]
 
 
+#: The first and last frames of parts of a recording, ascending.
+Spans = tuple[tuple[int, int], ...]
+
+
 @dataclass(frozen=True)
 class Block:
     """A grid of recordings: every combination of these values."""
@@ -37,6 +41,8 @@ class Block:
     seeds: tuple[int, ...]
     parameters: Values
     split: bool  #: split from recordings with an eighth of the bodies, not simulated
+    spans: Spans  #: only these frames are run; (): all
+    options: tuple[tuple[str, Any], ...]  #: for measuring, instead of the campaign's
 
 
 @dataclass(frozen=True)
@@ -118,6 +124,8 @@ def _blocks(blocks: list[Any]) -> Iterator[Block]:
             seeds=keys.get("seed", (1,)),
             parameters=keys.get("parameters", ()),
             split=keys.get("split", False),
+            spans=keys.get("span", ()),
+            options=tuple((name, keys[name]) for name in BLOCK_OPTIONS if name in keys),
         )
 
 
@@ -239,6 +247,19 @@ def _repetitions(value: Any) -> Any:
     return value
 
 
+def _spans(value: Any) -> Any:
+    flat = [frame for span in value if isinstance(span, list) for frame in span]
+    pairs = isinstance(value, list) and all(
+        isinstance(span, list) and len(span) == 2 and span[0] < span[1] for span in value
+    )
+    if not pairs or not all(map(_is_integer, flat)) or flat != sorted(set(flat)) or not flat:
+        raise _InvalidKey("a list of frames in ascending order, such as [[0, 99], [900, 999]]")
+    return tuple(map(tuple, value))
+
+
+#: Keys of CAMPAIGN_KEYS that a block may have, too.
+BLOCK_OPTIONS = ("repetitions",)
+
 BLOCK_KEYS: dict[str, Callable[[Any], Any]] = {
     "scenes": _strings,
     "object_type": _strings,
@@ -248,6 +269,8 @@ BLOCK_KEYS: dict[str, Callable[[Any], Any]] = {
     "seed": _integers,
     "parameters": _parameters,
     "split": _boolean,
+    "span": _spans,
+    "repetitions": _repetitions,
 }
 SELECTION_KEYS: dict[str, Callable[[Any], Any]] = {
     "algorithm": _strings,

@@ -46,10 +46,7 @@ class Estimate:
 
     def __init__(self, ledger: Ledger, options: dict[str, Any]) -> None:
         self._ledger = ledger
-        repetitions = options.get("repetitions", 1)
-        self._passes: int = (options.get("warmup", 0) + 1) * (
-            MIN_AUTO_REPETITIONS if repetitions == "auto" else repetitions
-        )
+        self._options = options
         self._limit: float = options.get("time_limit", DEFAULT_TIME_LIMIT)
         self._total = self._measured = 0.0
         self._rates = {True: SPLITTING, False: SIMULATING}  # by whether the recording is split
@@ -115,7 +112,10 @@ class Estimate:
     def _measured_seconds(self, recording: Recording, variant: str) -> float:
         """The measured time of a case's frames."""
         frame = self._seconds_per_body(recording, variant) * recording.objects
-        frames = recording.frames * self._passes
+        options = self._options | dict(recording.options)
+        repetitions = options.get("repetitions", 1)
+        passes = MIN_AUTO_REPETITIONS if repetitions == "auto" else repetitions
+        frames: int = recording.frames * passes * (options.get("warmup", 0) + 1)
         return frame * (frames if frame < self._limit else min(frames, FRAMES_TO_TIMEOUT))
 
     def _seconds_per_body(self, recording: Recording, variant: str) -> float:

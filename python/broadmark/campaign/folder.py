@@ -13,7 +13,7 @@ import contextlib
 import fcntl
 import itertools
 import pathlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TextIO
 
 from broadmark.campaign.attempts import PARTIAL_SUFFIX, outcome_of, read_attempt, variant_of
@@ -22,6 +22,8 @@ from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.plan import Recording, incompatibility
 from broadmark.errors import InputError
 from broadmark.files import atomic_write
+from broadmark.recording2 import ChangingRecording, Groups
+from broadmark.recordings import PoseRecording, read_recording, write_recording
 
 SUBFOLDERS = {
     "aabbs": "Recordings_AABBs",
@@ -87,7 +89,35 @@ class Folder:
         exists = self.file(recording).exists()
         return exists and (not recording.is_split or self.poses(recording).exists())
 
+    def cut(self, recording: Recording) -> None:
+        """Writes the file of a recording that consists of spans of another."""
+        assert recording.whole
+        path = self.file(recording.whole)
+        whole = read_recording(path)
+        if isinstance(whole, PoseRecording):
+            raise InputError(f"{path}: has poses, not boxes")
+        frames = [k for first, last in recording.spans for k in range(first, last + 1)]
+        chosen = set(frames)
+        groups: Groups | Iterable[Groups] | None = None
+        if isinstance(whole, ChangingRecording):
+            boxes = (boxes for k, (boxes, _) in enumerate(whole.frames()) if k in chosen)
+            groups = map(whole.groups_at, frames) if whole.filter_changes else whole.groups
+        else:
+            boxes = (whole.boxes[k] for k in frames)
+        file = self._path_of(recording, path.suffix[1:])
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_recording(
+            file,
+            boxes,
+            name=whole.name,
+            object_type=whole.object_type,
+            world=whole.world,
+            groups=groups,
+        )
+
     def _path_of(self, recording: Recording, format_: str) -> pathlib.Path:
+        if recording.spans:
+            return self.bake_folder(recording) / "spans" / f"{recording.name}.{format_}"
         series = recording.series
         name = self._names[series.scene.lower(), series.object_type.lower()]
         stem = f"{name} N{recording.objects} F{recording.frames}frames"
@@ -135,4 +165,7 @@ class Folder:
 
 def recorder_options(recording: Recording) -> list[str] | None:
     """The formats to bake a recording in; None: the default for the scene."""
-    return ["aabbs", "posrot"] if recording.is_split else None
+    if not recording.is_split and not recording.is_cut:
+        return None
+    # Recordings to be cut are long: without bodies at rest they are much smaller.
+    return ["broadmark" if recording.is_cut else "aabbs", *(["posrot"] * recording.is_split)]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
-from broadmark.campaign.description import Block, Campaign, Value
+from broadmark.campaign.description import Block, Campaign, Spans, Value
 from broadmark.errors import InputError
 from broadmark.recordings import HEADER, RECORD_BYTES
 
@@ -41,12 +42,18 @@ class Recording:
     frames: int
     source: Recording | None  #: the recording to split; None: simulated
     is_split: bool = False  #: a source of other recordings: its poses are recorded, too
+    is_cut: bool = False  #: only spans of it are run
+    spans: Spans = ()  #: the frames of `whole` that it consists of
+    whole: Recording | None = None
+    options: tuple[tuple[str, Any], ...] = ()  #: for measuring, instead of the campaign's
 
     @property
     def name(self) -> str:
         series = self.series
+        spans = "".join(f" {first}-{last}" for first, last in self.spans)
         return (
-            f"{series.scene} {series.object_type} N{self.objects} F{self.frames} {series.variation}"
+            f"{series.scene} {series.object_type} N{self.objects} F{self.frames}{spans} "
+            f"{series.variation}"
         )
 
     @property
@@ -58,25 +65,57 @@ class Recording:
 
 def planned_recordings(campaign: Campaign) -> list[Recording]:
     """The distinct recordings, the smallest first. Raises InputError for a missing source."""
-    planned: dict[tuple[Series, int, int], Block] = {}
+    baked: dict[tuple[Series, int, int], Block] = {}
+    run: dict[tuple[tuple[Series, int, int], Spans], Block] = {}
     for block in campaign.blocks:
         for key in _combinations(block):
-            other = planned.setdefault(key, block)
+            other = baked.setdefault(key, block)
             if other.split != block.split:
                 raise InputError(
                     f"{campaign.path}: {block.where}: {_name_of(key)} is split in this block and "
                     "simulated in another: remove it from one of them"
                 )
+            if run.setdefault((key, block.spans), block).options != block.options:
+                raise InputError(
+                    f"{campaign.path}: {block.where}: {_name_of(key)} is measured in another way in "
+                    "another block: remove it from one of them"
+                )
+            if block.spans and block.spans[-1][1] > key[2]:
+                raise InputError(
+                    f"{campaign.path}: {block.where}.span: frame {block.spans[-1][1]} does not exist: "
+                    f"{_name_of(key)} has frames 0 to {key[2]}"
+                )
     sources = {
-        key: _source_key(campaign, key, planned) for key, block in planned.items() if block.split
+        key: _source_key(campaign, key, baked) for key, block in baked.items() if block.split
     }
     split = set(sources.values())
+    cut = {key for key, spans in run if spans} - {key for key, spans in run if not spans}
 
-    def recording(key: tuple[Series, int, int]) -> Recording:
+    def recording(
+        key: tuple[Series, int, int], options: tuple[tuple[str, Any], ...] = ()
+    ) -> Recording:
         source = recording(sources[key]) if key in sources else None
-        return Recording(*key, source=source, is_split=key in split)
+        return Recording(
+            *key, source=source, is_split=key in split, is_cut=key in cut, options=options
+        )
 
-    return sorted(map(recording, planned), key=lambda recording: recording.objects)
+    def to_run(key: tuple[Series, int, int], block: Block) -> Recording:
+        if not block.spans:
+            return recording(key, block.options)
+        series, objects, _ = key
+        frames = sum(last - first + 1 for first, last in block.spans) - 1
+        return Recording(
+            series,
+            objects,
+            frames,
+            source=None,
+            spans=block.spans,
+            whole=recording(key),
+            options=block.options,
+        )
+
+    recordings = [to_run(key, block) for (key, _), block in run.items()]
+    return sorted(recordings, key=lambda recording: recording.objects)
 
 
 def levels(recordings: Iterable[Recording]) -> Iterator[tuple[int, list[Recording]]]:
@@ -87,12 +126,13 @@ def levels(recordings: Iterable[Recording]) -> Iterator[tuple[int, list[Recordin
 
 
 def with_sources(recordings: Iterable[Recording]) -> list[Recording]:
-    """The recordings and all their sources, sources first."""
+    """The recordings and all that they are made of, sources first."""
     needed: dict[Recording, None] = {}
 
     def add(recording: Recording) -> None:
-        if recording.source:
-            add(recording.source)
+        for other in (recording.source, recording.whole):
+            if other:
+                add(other)
         needed[recording] = None
 
     for recording in recordings:
@@ -105,10 +145,12 @@ def incompatibility(former: Campaign, campaign: Campaign) -> str:
     for name in sorted(former.options.keys() | campaign.options.keys()):
         if former.options.get(name) != campaign.options.get(name):
             return f"the '{name}' is {former.options.get(name)}, not {campaign.options.get(name)}"
-    names = {recording.name for recording in planned_recordings(campaign)}
+    options = {recording.name: recording.options for recording in planned_recordings(campaign)}
     for recording in planned_recordings(former):
-        if recording.name not in names:
+        if recording.name not in options:
             return f"it has the recording '{recording.name}'"
+        if options[recording.name] != recording.options:
+            return f"it measures the recording '{recording.name}' in another way"
     for old in former.selections:
         if not any(
             new.parameters == old.parameters

@@ -64,11 +64,15 @@ class Runner:
     def _bake(self, recordings: list[Recording]) -> list[Recording]:
         """Bakes missing recordings, verifies existing ones and returns the valid ones."""
 
-        def group_key(recording: Recording) -> tuple[int, str, bool]:
-            return recording.objects, recording.series.variation, recording.is_split
+        def group_key(recording: Recording) -> tuple[int, str, bool, bool]:
+            series = recording.series
+            return recording.objects, series.variation, recording.is_split, recording.is_cut
 
         failed: set[Recording] = set()
-        needed = sorted(with_sources(recordings), key=group_key)
+        needed = sorted(
+            (recording for recording in with_sources(recordings) if not recording.spans),
+            key=group_key,
+        )
         for _, recordings_of_key in itertools.groupby(needed, key=group_key):
             group = list(recordings_of_key)
             missing = [recording for recording in group if not self.folder.is_baked(recording)]
@@ -80,9 +84,13 @@ class Runner:
             except InputError as error:
                 self._report_failure(f"{_names(group)}: {error}")
                 failed.update(group)
-        return [
+        valid = [
             recording for recording in recordings if failed.isdisjoint(with_sources([recording]))
         ]
+        for recording in valid:
+            if recording.spans and not self.folder.is_baked(recording):
+                self.folder.cut(recording)
+        return valid
 
     def _bake_group(self, recordings: list[Recording]) -> None:
         """Bakes recordings with the same folder and formats by a single call."""
@@ -153,6 +161,7 @@ class Runner:
             "source": path,
             **selection_request(self.campaign, selection),
             **measuring_request(self.campaign),
+            **dict(recording.options),
             "allow_timeout": True,
             "filter": filter_for(pending),
             "jsonl": str(attempt),

@@ -90,9 +90,8 @@ def planned_jobs(folder: Folder, ledger: Ledger, copy_to: str | None) -> list[Jo
     for objects, level in levels(filter(ledger.pending, ledger.recordings)):
         needs = []
         if not all(map(folder.is_baked, level)):
-            sources = {
-                recording.source.objects for recording in level if recording.source
-            } & bakes.keys()
+            made_of = [(recording.whole or recording).source for recording in level]
+            sources = {source.objects for source in made_of if source} & bakes.keys()
             bakes[objects] = Job(
                 f"bake-{objects}",
                 f"Bakes recordings of {objects} bodies.",

@@ -19,7 +19,7 @@ from broadmark.campaign.folder import Folder
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.merging import merge
 from broadmark.campaign.options import planned_variants, recording_names
-from broadmark.campaign.plan import Recording, planned_recordings
+from broadmark.campaign.plan import Recording, planned_recordings, with_sources
 from broadmark.campaign.progress import Progress, long_time
 from broadmark.campaign.runner import Runner
 from broadmark.campaign.summary import table
@@ -83,11 +83,8 @@ def main(options: argparse.Namespace) -> int:
     estimate = Estimate(ledger, campaign.options)
 
     def missing_recordings() -> list[Recording]:
-        return [
-            recording
-            for recording in chosen
-            if ledger.pending(recording) and not folder.is_baked(recording)
-        ]
+        unbaked = (r for r in chosen if ledger.pending(r) and not folder.is_baked(r))
+        return [r for r in with_sources(unbaked) if not folder.is_baked(r)]
 
     if options.slurm:
         return _write_jobs(folder, ledger, options)
@@ -107,7 +104,7 @@ def main(options: argparse.Namespace) -> int:
         gigabytes = sum(recording.bytes for recording in missing_recordings()) / 1e9
         print(
             f"{ledger.finished} cases are finished, {ledger.to_run} remain; "
-            f"{len(missing_recordings())} recordings remain to be baked, {gigabytes:.1f} GB; "
+            f"{len(missing_recordings())} recordings remain to be baked, at most {gigabytes:.1f} GB; "
             f"about {long_time(estimate.remaining(missing_recordings()))}"
         )
         return 0
