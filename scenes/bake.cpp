@@ -119,22 +119,22 @@ std::vector<std::string> escapeTexts(const Simulation& simulation) {
   return lines;
 }
 
-bool isBaked(const fs::path& path, Simulation& simulation) {
+bool isBaked(const fs::path& path, Simulation& simulation, const std::function<bool()>& cancelled) {
   const Sidecar sidecar = sidecarOf(path);
   try {
     const std::optional<std::string> hash = storedHash(sidecar);
     if (!hash || sidecar != Sidecar(sidecarJson(simulation, *hash))) return false;
     const auto recording = openRecordingFile(path);
-    return recording->scene() == simulation.scene() && recording->hash() == *hash;
+    return recording->scene() == simulation.scene() && recording->hash(cancelled) == *hash;
   } catch (const InputError&) {
     return false;  // missing or damaged
   }
 }
 
-bool isIntact(const fs::path& path) {
+bool isIntact(const fs::path& path, const std::function<bool()>& cancelled) {
   try {
     const std::optional<std::string> hash = bakedHash(path);
-    return hash && openRecordingFile(path)->hash() == *hash;
+    return hash && openRecordingFile(path)->hash(cancelled) == *hash;
   } catch (const InputError&) {
     return false;  // missing or damaged
   }

@@ -87,7 +87,7 @@ std::uint64_t BakePlan::bytes() const {
   return sum;
 }
 
-std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress& progress) {
+std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress& progress) try {
   std::vector<BakeJob> jobs = makeJobs(options);
   const auto to_check = [&](const fs::path& path) { return !options.force && fs::exists(path); };
   std::uint64_t total = 0;
@@ -103,12 +103,14 @@ std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress&
         missing.push_back(path);
         continue;
       }
-      if (progress && !progress(path, ++number, total)) return {};
-      if (isBaked(path, *job.simulation)) {
+      ++number;
+      const auto stopped = [&] { return progress && !progress(path, number, total); };
+      if (stopped()) throw Cancelled();
+      if (isBaked(path, *job.simulation, stopped)) {
         plan.kept.push_back(path);
         continue;
       }
-      if (isIntact(path)) {
+      if (isIntact(path, stopped)) {
         throw InputError(fmt::format(
             "{}: baked before with other parameters (see its .json): --force replaces it, another "
             "--output keeps it",
@@ -120,6 +122,8 @@ std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress&
     if (!job.paths.empty()) plan.pending.push_back(std::move(job));
   }
   return plan;
+} catch (const Cancelled&) {
+  return {};
 }
 
 void prepare(const BakePlan& plan, const fs::path& output) {

@@ -146,6 +146,8 @@ class Batch {
       });
     } catch (const InputError& error) {
       failure = error.what();
+    } catch (const Cancelled&) {
+      stopping_ = true;
     } catch (const std::bad_alloc&) {
       failure = queued.job.paths.front().string() + ": out of memory";
     }

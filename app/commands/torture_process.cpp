@@ -1,19 +1,14 @@
 #include "commands/torture_process.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <csignal>
-#include <cstring>
 #include <utility>
 
 #include "broadmark/error.h"
@@ -38,14 +33,6 @@ std::vector<std::string> servingCommand(std::uint64_t seed) {
   words.front() = "/proc/self/exe";
   words.insert(words.begin() + 2, fmt::format("--serve-rounds={}", seed));
   return words;
-}
-
-std::pair<FileDescriptor, FileDescriptor> makeSockets() {
-  std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw InputError(fmt::format("torture: no socket: {}", std::strerror(errno)));
-  }
-  return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
 }
 
 Fault faultOfEnd(int wait_status) {
@@ -90,7 +77,7 @@ TortureProcess::Outcome TortureProcess::run(std::uint64_t number, const CancelQu
 }
 
 void TortureProcess::start(const CancelQuery& cancelled) {
-  auto [here, there] = makeSockets();
+  auto [here, there] = openSockets();
   process_ = ChildProcess(servingCommand(seed_),
                           {.descriptors = {there.get(), there.get(), STDERR_FILENO}});
   lines_ = LineChannel(std::move(here));
@@ -115,17 +102,6 @@ int TortureProcess::end() {
   constexpr std::chrono::seconds kGracePeriod{2};
   lines_ = {};
   return process_.wait(kGracePeriod, InterruptGuard::requested);
-}
-
-TortureChannel::TortureChannel()
-    : socket_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)) {
-  const FileDescriptor nothing(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-  ::dup2(nothing.get(), STDIN_FILENO);
-  ::dup2(STDERR_FILENO, STDOUT_FILENO);
-  std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the parent process
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const rlimit none{0, 0};
-  ::setrlimit(RLIMIT_CORE, &none);
 }
 
 void TortureChannel::serve(TortureOptions options, std::chrono::duration<double> limit) {

@@ -48,18 +48,15 @@ class TortureProcess {
   std::vector<std::uint64_t> rounds_;  ///< that the process has run
 };
 
-/// The other side's end of the connection: standard input, which is replaced, as is standard
-/// output, so that whatever a plug-in prints is kept out.
+/// The other side's end of the connection.
 class TortureChannel {
  public:
-  TortureChannel();
-
   /// Runs rounds until the other side hangs up. A frame that takes longer than `limit` ends this
   /// process.
   void serve(TortureOptions options, std::chrono::duration<double> limit);
 
  private:
-  FileDescriptor socket_;
+  FileDescriptor socket_ = serveParent();
 };
 
 }  // namespace broadmark

@@ -122,6 +122,8 @@ void Inspector::drawStatus(const RunProgress& progress) {
       ImGui::SameLine(0, 14 * ui_.scale);
       ui_.faint(views_.first().answer().answer);
     }
+  } else if (session_.playback.source()) {
+    ui_.plain(sourceText(session_.playback.source().get()));
   } else {
     ui_.faint("Nothing is open: simulate a scene, or open or drop a file");
   }

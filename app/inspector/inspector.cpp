@@ -26,12 +26,12 @@ constexpr float kMinAreaExtent = 110;  // units: of a visible dock area
 }  // namespace
 
 Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences,
-                     float scale, ExecutorFactory make_executor)
+                     float scale, ExecutorFactory make_executor, SimulationHost host)
     : preferences_(std::move(preferences)),
       context_(ImGui::CreateContext()),
       renderer_(gl),
       gl_(&gl),
-      session_(std::move(algorithms), std::move(make_executor)),
+      session_(std::move(algorithms), std::move(make_executor), std::move(host)),
       views_(gl),
       panels_(makePanels({ui_, session_, views_.first(), files_})),
       screen_scale_(scale) {

@@ -48,7 +48,8 @@ class Inspector {
   /// `scale`: pixels per unit. The GL context must be current from construction to destruction; at
   /// most one instance may exist.
   Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale,
-            ExecutorFactory make_executor = makeInProcessExecutor);
+            ExecutorFactory make_executor = makeInProcessExecutor,
+            SimulationHost host = simulateInProcess);
   ~Inspector();
   Inspector(const Inspector&) = delete;
   Inspector& operator=(const Inspector&) = delete;

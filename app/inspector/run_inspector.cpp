@@ -97,6 +97,10 @@ void linkClipboard(Window& window) {
   };
 }
 
+SimulationHost hostOf(const RunRequest& request) {
+  return request.hosts.in_process ? simulateInProcess : simulateInProcesses(request.plugins);
+}
+
 /// Opens the plan's source, and adds its algorithms.
 void openPlan(Session& session, Plan plan) {
   const std::optional<std::uint32_t> frame = plan.request.frame;
@@ -113,7 +117,7 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
   std::unique_ptr<Script> script = scriptOf(script_file);
   {
     Inspector inspector(gl, plan.algorithms, preferences, window.scale(),
-                        executorFactory(plan.request.hosts));
+                        executorFactory(plan.request.hosts), hostOf(plan.request));
     linkClipboard(window);
     openPlan(inspector.session(), std::move(plan));
     Movie movie;
@@ -162,7 +166,7 @@ void inspectOffscreen(Plan plan, const fs::path& script_file) {
   const auto context = makeOffscreenContext(request.picture.gl);
   const Gl gl(*context);
   std::unique_ptr<Script> script = scriptOf(script_file);
-  Inspector inspector(gl, plan.algorithms, {}, 1, executorFactory(request.hosts));
+  Inspector inspector(gl, plan.algorithms, {}, 1, executorFactory(request.hosts), hostOf(request));
   openPlan(inspector.session(), std::move(plan));
   InputQueue input;
   Movie movie;

@@ -3,13 +3,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -37,25 +35,14 @@ constexpr int kProtocolVersion = 1;
 constexpr char kFramesFile[] = "/proc/self/fd/3";
 constexpr char kPairsFile[] = "/proc/self/fd/4";
 
-std::string endText(int wait_status) {
-  if (WIFSIGNALED(wait_status)) {
-    return fmt::format("the program crashed: {}", ::strsignal(WTERMSIG(wait_status)));
-  }
-  return fmt::format("the program exited with status {}", WEXITSTATUS(wait_status));
-}
-
 /// A running program.
 class Program {
  public:
   explicit Program(const std::string& command) {
-    std::array<int, 2> calls{};
     std::array<int, 2> replies{};
     // A socket, as a write to it raises no signal once the program has ended.
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, calls.data()) != 0) {
-      throw systemError("no socket");
-    }
-    calls_ = FileDescriptor(calls[0]);
-    const FileDescriptor input(calls[1]);
+    auto [calls, input] = openSockets();
+    calls_ = std::move(calls);
     if (::pipe2(replies.data(), O_CLOEXEC) != 0) throw systemError("no pipe");
     replies_ = LineChannel(FileDescriptor(replies[0]));
     const FileDescriptor output(replies[1]);
@@ -82,7 +69,7 @@ class Program {
     if (sent == static_cast<ssize_t>(line.size())) reply = replies_.read(cancelled);
     if (!reply) {
       constexpr std::chrono::seconds kGracePeriod{1};
-      throw std::runtime_error(endText(process_.wait(kGracePeriod)));
+      throw std::runtime_error(fmt::format("the program {}", endText(process_.wait(kGracePeriod))));
     }
     const Json json = jsonOrNull(*reply);
     if (!json.is_object()) {

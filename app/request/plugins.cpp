@@ -266,8 +266,8 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
   return algorithms;
 }
 
-void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds) {
-  if (!plugins.empty()) guardEngines(limit_seconds);
+void addEnginesOf(const std::vector<std::string>& plugins, std::optional<double> limit_seconds) {
+  if (!plugins.empty() && limit_seconds) guardEngines(*limit_seconds);
   for (const std::string& file : plugins) {
     if (!isLibrary(file)) continue;
     const auto* plugin =

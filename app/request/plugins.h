@@ -2,6 +2,7 @@
 // loaded with --plugin.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
 /// Adds the engines of these libraries to the available ones (see broadmark/scenes/engine_plugin.h)
 /// for the rest of the process. Throws InputError like availableAlgorithms(), and for an engine
 /// with a parameter that a scene also has. A crash in one then ends the process with a message, as
-/// does a frame longer than `limit_seconds`.
-void addEnginesOf(const std::vector<std::string>& plugins, double limit_seconds = kNoEngineLimit);
+/// does a frame longer than `limit_seconds`; nullopt: engines are not guarded.
+void addEnginesOf(const std::vector<std::string>& plugins,
+                  std::optional<double> limit_seconds = kNoEngineLimit);
 
 }  // namespace broadmark

@@ -107,7 +107,7 @@ class PlanRun {
     const auto recording =
         openRecording(entry.source, observer_, request_.record, request_.scene.recorders);
     if (!recording) return false;
-    Oracle oracle;
+    Oracle oracle(Oracle::kBudgetBytes, kUnlimitedPairs, [this] { return observer_.cancelled(); });
     cases_.clear();
     for (const Case& test_case : entry.cases)
       cases_.push_back(plannedCase(test_case, entry.source));
@@ -122,8 +122,13 @@ class PlanRun {
       throw;
     }
     storeResults(entry);
-    if (is_complete) observer_.onRecordingEnd(entry, *recording, oracle);
-    return is_complete;
+    if (!is_complete) return false;
+    try {
+      observer_.onRecordingEnd(entry, *recording, oracle);
+    } catch (const Cancelled&) {
+      return false;
+    }
+    return true;
   }
 
   PlannedCase plannedCase(const Case& test_case, const Source& source) {

@@ -43,7 +43,9 @@ fs::path bakeInto(Source& source, TaskObserver& tasks, const fs::path& directory
   Simulation& simulation = *source.simulation;
   const auto paths =
       recordingPaths(directory, simulation.scene(), source.reference.swept, recorders);
-  const auto is_baked = [&](const fs::path& path) { return isBaked(path, simulation); };
+  const auto is_baked = [&](const fs::path& path) {
+    return isBaked(path, simulation, [&tasks] { return tasks.cancelled(); });
+  };
   if (std::ranges::all_of(paths, is_baked)) return paths.front();
   for (const fs::path& path : paths) makeDirectory(path.parent_path());
   const bool is_complete = bake(simulation, paths, startTask(tasks, "baking", simulation.scene()));
@@ -84,10 +86,11 @@ std::unique_ptr<Recording> openUnadapted(Source& source, TaskObserver& tasks,
 
 std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks,
                                              const fs::path& directory,
-                                             const std::vector<std::string>& recorders) {
+                                             const std::vector<std::string>& recorders) try {
   std::unique_ptr<Recording> recording = openUnadapted(source, tasks, directory, recorders);
   if (!recording) return nullptr;
-  const std::string hash = adaptedHash(recording->hash(), source.reference.reading);
+  const std::string hash = adaptedHash(recording->hash([&tasks] { return tasks.cancelled(); }),
+                                       source.reference.reading);
   source.reference.hash = hash;
   if (!source.expected_hash.empty()) {
     requireHash(source.simulation ? source.reference.scene.name + ", simulated again"
@@ -95,6 +98,8 @@ std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks
                 hash, source.expected_hash);
   }
   return adapted(std::move(recording), source.reference.reading);
+} catch (const Cancelled&) {
+  return nullptr;
 }
 
 std::unique_ptr<IndexedFrames> openForCommand(Source& source, bool quiet) {

@@ -3,11 +3,20 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "broadmark/files.h"
 #include "broadmark/harness/case_executor.h"
 
 namespace broadmark {
+
+/// Both ends of a stream socket. Throws std::runtime_error.
+std::pair<FileDescriptor, FileDescriptor> openSockets();
+
+/// The other end, in a process that serves the one that started it: standard input, which is
+/// replaced, as is standard output, so that whatever a plug-in prints is kept out. The process ends
+/// with its parent, and leaves Ctrl-C to it. Throws InputError if it has no such parent.
+FileDescriptor serveParent();
 
 class LineChannel {
  public:

@@ -197,7 +197,7 @@ class Duel {
   std::vector<std::size_t> order_;
   std::mt19937_64 random_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
-  Oracle oracle_;
+  Oracle oracle_{Oracle::kBudgetBytes, kUnlimitedPairs, options_.cancelled};
   DuelResult result_;
   Clock::time_point begin_ = Clock::now();
   double process_seconds_ = 0;  ///< measured in the present processes

@@ -112,9 +112,27 @@ StripContents fill(const Strips& strips, std::span<const Aabb> boxes) {
   throw InputError(fmt::format("more than {} pairs overlap: too many to compute", max_pairs));
 }
 
+/// Ascending: a counting sort by the first bodies, then a sort of each body's pairs.
+template <class Poll>
+std::vector<Pair> sortedPairs(const std::vector<Pair>& pairs, std::size_t bodies, Poll& poll) {
+  std::vector<std::size_t> start(bodies + 1);
+  for (const Pair pair : pairs) ++start[pair.a + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  std::vector<Pair> sorted(pairs.size());
+  for (const Pair pair : pairs) sorted[next[pair.a]++] = pair;
+  for (std::size_t body = 0; body < bodies; ++body) {
+    poll();
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(start[body]),
+              sorted.begin() + static_cast<std::ptrdiff_t>(start[body + 1]));
+  }
+  return sorted;
+}
+
 /// The pairs of all images: as those of more bodies, in a world that is not periodic.
 std::vector<Pair> periodicPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
-                                const PeriodicBox& periodic, std::size_t max_pairs) {
+                                const PeriodicBox& periodic, std::size_t max_pairs,
+                                const std::function<bool()>& cancelled) {
   std::vector<Aabb> images;
   std::vector<std::uint32_t> bodies;
   std::vector<unsigned> axes;  // along which an image lies lower
@@ -128,7 +146,7 @@ std::vector<Pair> periodicPairs(std::span<const Aabb> boxes, const CollisionFilt
     }
   }
   std::vector<Pair> pairs;
-  for (const Pair found : sweptPairs(images, filter.of(bodies), {}, kUnlimitedPairs)) {
+  for (const Pair found : sweptPairs(images, filter.of(bodies), {}, kUnlimitedPairs, cancelled)) {
     const Pair pair = orderedPair(bodies[found.a], bodies[found.b]);
     if (pair.a != pair.b && (axes[found.a] & axes[found.b]) == 0) pairs.push_back(pair);
   }
@@ -164,8 +182,13 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFi
 }
 
 std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
-                             const PeriodicBox& periodic, std::size_t max_pairs) {
-  if (periodic.repeats()) return periodicPairs(boxes, filter, periodic, max_pairs);
+                             const PeriodicBox& periodic, std::size_t max_pairs,
+                             const std::function<bool()>& cancelled) {
+  if (periodic.repeats()) return periodicPairs(boxes, filter, periodic, max_pairs, cancelled);
+  auto poll = [&cancelled, steps = 0U]() mutable {
+    constexpr unsigned kSteps = 64;
+    if (cancelled && ++steps % kSteps == 0 && cancelled()) throw Cancelled();
+  };
   std::vector<Pair> pairs;
   if (std::ranges::all_of(boxes, isEmpty)) return pairs;
   const std::array<int, 3> axes = axesByExtent(boxes);
@@ -182,6 +205,7 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
       return std::pair(world_of(body), boxes[body].min[sweep_axis]);
     });
     for (auto i = bodies.begin(); i != bodies.end(); ++i) {
+      poll();
       const Aabb& a = boxes[*i];
       for (auto j = i + 1; j != bodies.end() && world_of(*j) == world_of(*i) &&
                            boxes[*j].min[sweep_axis] <= a.max[sweep_axis];
@@ -194,8 +218,7 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
       }
     }
   }
-  std::ranges::sort(pairs);
-  return pairs;
+  return sortedPairs(pairs, boxes.size(), poll);
 }
 
 }  // namespace broadmark

@@ -366,7 +366,7 @@ std::optional<FrameDifference> lastDifference(CaseRun& case_run, IndexedFrames& 
     if (cancelled && cancelled()) throw Cancelled();
     const Frame frame = source.at(index);
     if (!case_run.step(frame) || index < last) continue;
-    Oracle oracle(0);
+    Oracle oracle(0, kUnlimitedPairs, cancelled);
     return case_run.check(frame, oracle);
   }
   return std::nullopt;

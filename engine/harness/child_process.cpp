@@ -46,6 +46,18 @@ std::vector<std::string> environmentWith(
 
 }  // namespace
 
+std::string endText(int wait_status) {
+  if (WIFEXITED(wait_status)) {
+    return fmt::format("exited with status {}", WEXITSTATUS(wait_status));
+  }
+  const int signal = WTERMSIG(wait_status);
+  const char* name = ::sigabbrev_np(signal);
+  const std::string what =
+      fmt::format("SIG{} ({})", name == nullptr ? "?" : name, ::sigdescr_np(signal));
+  if (signal == SIGKILL) return "killed with " + what + ", possibly out of memory";
+  return "crashed with " + what;
+}
+
 ChildProcess::ChildProcess(std::vector<std::string> command, const Options& options)
     : own_group_(options.own_group) {
   posix_spawn_file_actions_t actions{};

@@ -47,8 +47,9 @@ Oracle::PairAnswer& Oracle::find(std::span<const Aabb> boxes, const CollisionFil
   const HashValue key = keyOf(boxes, filter, periodic);
   const auto cached = answers_.find(key);
   if (cached != answers_.end() && (cached->second.pairs || !with_pairs)) return cached->second;
-  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter, periodic)
-                                              : sweptPairs(boxes, filter, periodic, max_pairs_);
+  scratch_ = boxes.size() <= kBruteForceLimit
+                 ? bruteForcePairs(boxes, filter, periodic)
+                 : sweptPairs(boxes, filter, periodic, max_pairs_, cancelled_);
   PairAnswer& answer = answers_[key];
   const PairRun pairs = scratch_;
   answer.digest = digest({&pairs, 1});

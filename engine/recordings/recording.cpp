@@ -137,12 +137,13 @@ const RecordingOrigin& Recording::origin() const {
   return unknown;
 }
 
-const std::string& Recording::hash() {
+const std::string& Recording::hash(const std::function<bool()>& cancelled) {
   if (!hash_.empty()) return hash_;
   Hasher hasher;
   constexpr std::uint64_t kMaxAtOnce = 1 << 20;
   std::vector<std::byte> chunk(std::min(size_, kMaxAtOnce));
   for (std::uint64_t offset = 0; offset < size_; offset += chunk.size()) {
+    if (cancelled && cancelled()) throw Cancelled();
     const std::span part(chunk.data(), std::min<std::uint64_t>(chunk.size(), size_ - offset));
     read(offset, part);
     hasher.add(part);

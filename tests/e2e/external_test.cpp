@@ -64,7 +64,7 @@ TEST_F(External, ParametersAndThreadsReachIt) {
 TEST_F(External, FaultsAreResults) {
   const std::pair<const char*, const char*> faults[] = {
       {"raises", "error: frame 1: the program exited with status 1"},
-      {"crashes", "error: frame 1: the program crashed: Aborted"},
+      {"crashes", "error: frame 1: the program crashed with SIGABRT"},
       {"prints", "replied 'hello': a JSON object on one line is expected"},
       {"no time", "'seconds' is missing"},
       {"too long", "reports 1e+06 s for a frame that took"},

@@ -1,6 +1,7 @@
 # Plays a script in the inspector, off-screen, in a fresh directory of its own. Comments of the
 # script may tell what belongs to it; STATUS is what a command has to end with, PLUGIN in its
-# environment is the library of the faulty algorithms (UNRULY: the one that crashes when asked to):
+# environment is the library of the faulty algorithms (UNRULY, UNRULY_ENGINE: the
+# algorithm and the engine that crash or hang when asked to):
 #   # before STATUS: COMMAND
 #   # arguments: further ones of the program
 #   # after STATUS: COMMAND
@@ -30,6 +31,6 @@ string(REPLACE "# arguments: " "" arguments "${arguments}")
 separate_arguments(arguments UNIX_COMMAND "${arguments}")
 execute_process(
   COMMAND ${PROGRAM} --headless --ui ${arguments} --plugin ${PLUGIN}
-    --plugin ${UNRULY} --script ${SCRIPT} --gl auto
+    --plugin ${UNRULY} --plugin ${UNRULY_ENGINE} --script ${SCRIPT} --gl auto
   WORKING_DIRECTORY ${WORK_DIR} COMMAND_ERROR_IS_FATAL ANY)
 run_commands(after)

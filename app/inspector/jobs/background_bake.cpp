@@ -12,7 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void bake(BackgroundBake& job, std::vector<BakeJob> jobs, int threads) {
+void bake(BackgroundBake& job, std::vector<BakeJob> jobs, int threads, const SimulationHost& host) {
+  for (BakeJob& pending : jobs) {
+    pending.simulation = host(std::move(pending.simulation), [&job] { return job.cancelled(); });
+  }
   const auto on_ended = [&](const BakedJob& baked) {
     job.update([&](BakeReport& report) {
       for (BakeReport::Item& item : report.items) {
@@ -35,7 +38,7 @@ void bake(BackgroundBake& job, std::vector<BakeJob> jobs, int threads) {
   bakeAll(std::move(jobs), threads, on_ended, on_progress);
 }
 
-void planAndBake(BackgroundBake& job, const BakeOptions& options) {
+void planAndBake(BackgroundBake& job, const BakeOptions& options, const SimulationHost& host) {
   auto plan =
       planBake(options, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
         job.update([&](BakeReport& report) {
@@ -54,7 +57,7 @@ void planAndBake(BackgroundBake& job, const BakeOptions& options) {
       for (const fs::path& path : pending.paths) report.items.push_back({.path = path});
     }
   });
-  if (!plan->pending.empty()) bake(job, std::move(plan->pending), options.threads);
+  if (!plan->pending.empty()) bake(job, std::move(plan->pending), options.threads, host);
 }
 
 }  // namespace
@@ -83,22 +86,23 @@ JobStatus BakeReport::status() const {
                      {"failed", std::to_string(failed())}}};
 }
 
-void startBake(BackgroundBake& job, BakeOptions options) {
-  job.start({}, [&job, options = std::move(options)] {
-    planAndBake(job, options);
+void startBake(BackgroundBake& job, BakeOptions options, SimulationHost host) {
+  job.start({}, [&job, options = std::move(options), host = std::move(host)] {
+    planAndBake(job, options, host);
     return !job.cancelled();
   });
 }
 
-void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation, fs::path path) {
+void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation, fs::path path,
+               const SimulationHost& host) {
   std::vector<BakeJob> jobs(1);
   jobs[0].scene = simulation->scene();
   jobs[0].simulation = std::move(simulation);
   jobs[0].paths = {std::move(path)};
-  job.start({}, [&job, jobs = std::move(jobs)]() mutable {
+  job.start({}, [&job, jobs = std::move(jobs), host]() mutable {
     requireBakeable(*jobs[0].simulation, jobs[0].paths);
     job.update([&](BakeReport& report) { report.items = {{.path = jobs[0].paths[0]}}; });
-    bake(job, std::move(jobs), 1);
+    bake(job, std::move(jobs), 1, host);
     return !job.cancelled();
   });
 }

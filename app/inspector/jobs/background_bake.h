@@ -9,6 +9,7 @@
 #include "bake/bake_plan.h"
 #include "bake/batch.h"
 #include "inspector/jobs/job.h"
+#include "request/simulation_process.h"
 
 namespace broadmark {
 
@@ -41,10 +42,10 @@ struct BakeReport : TaskReport {
 using BackgroundBake = Task<BakeReport>;
 
 /// Plans and bakes a batch. Throws InputError while another batch is running.
-void startBake(BackgroundBake& job, BakeOptions options);
+void startBake(BackgroundBake& job, BakeOptions options, SimulationHost host = simulateInProcess);
 /// Bakes a single recording, overwriting an existing file. Throws InputError while another batch is
 /// running.
 void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation,
-               std::filesystem::path path);
+               std::filesystem::path path, const SimulationHost& host = simulateInProcess);
 
 }  // namespace broadmark

@@ -89,13 +89,17 @@ JobStatus BenchmarkReport::status() const {
 }
 
 void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
-                    const ExecutorFactory& make_executor) {
+                    const ExecutorFactory& make_executor, const SimulationHost& host) {
   const std::filesystem::path file = request.outputs.at("json");
   requireOutput(file);
   job.start({.file = file}, [&job, request = std::move(request), algorithms = std::move(algorithms),
-                             make_executor] {
+                             make_executor, host] {
     job.update([](BenchmarkReport& report) { report.activity = "opening recordings"; });
     Plan plan = makePlan(request, PlanUse::run, algorithms);
+    for (PlanEntry& entry : plan.entries) {
+      std::unique_ptr<Simulation>& simulation = entry.source.simulation;
+      if (simulation) simulation = host(std::move(simulation), [&job] { return job.cancelled(); });
+    }
     job.update([&](BenchmarkReport& report) { report.cases = caseIds(plan).size(); });
     Observer observer(job, stepsOf(plan));
     return runPlan(plan, make_executor, observer).complete;

@@ -10,6 +10,7 @@
 #include "broadmark/results/results.h"
 #include "inspector/jobs/job.h"
 #include "request/run_request.h"
+#include "request/simulation_process.h"
 
 namespace broadmark {
 
@@ -42,6 +43,7 @@ using BackgroundBenchmark = Task<BenchmarkReport>;
 /// Starts a run with the available algorithms; rewrites its results as JSON after each recording.
 /// Throws InputError while another run is active.
 void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
-                    const ExecutorFactory& make_executor);
+                    const ExecutorFactory& make_executor,
+                    const SimulationHost& host = simulateInProcess);
 
 }  // namespace broadmark

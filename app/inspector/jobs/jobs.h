@@ -17,7 +17,8 @@ namespace broadmark {
 /// One job of each kind. To add a kind, add a file and an element of `jobs_`.
 class Jobs {
  public:
-  explicit Jobs(ExecutorFactory executor_factory) : make_executor(std::move(executor_factory)) {}
+  Jobs(ExecutorFactory executor_factory, SimulationHost simulation_host)
+      : make_executor(std::move(executor_factory)), host(std::move(simulation_host)) {}
 
   template <class JobType>
   [[nodiscard]] JobType& get() {
@@ -27,6 +28,7 @@ class Jobs {
   [[nodiscard]] bool running() const { return std::ranges::any_of(all_, &Job::running); }
 
   const ExecutorFactory make_executor;  ///< creates the executors that run algorithms
+  const SimulationHost host;            ///< where simulations run
 
  private:
   std::tuple<BackgroundBake,       //

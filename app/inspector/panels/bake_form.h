@@ -37,7 +37,7 @@ class BakeForm : BatchForm {
       update();
       started_ = session.notices.catchErrors([&] {
         if (!preview_.error.empty()) throw InputError(preview_.error);
-        startBake(bake, options_);
+        startBake(bake, options_, session.jobs.host);
       });
     }
     ImGui::BeginDisabled(running);

@@ -60,7 +60,7 @@ class BenchmarkForm : BatchForm {
   void start() {
     session.notices.catchErrors([&] {
       startBenchmark(session.jobs.get<BackgroundBenchmark>(), request(),
-                     session.tracks.algorithms(), session.jobs.make_executor);
+                     session.tracks.algorithms(), session.jobs.make_executor, session.jobs.host);
     });
   }
 

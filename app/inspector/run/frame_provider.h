@@ -11,6 +11,7 @@
 #include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/authored_scene.h"
 #include "broadmark/scenes/simulation.h"
+#include "request/simulation_process.h"
 
 namespace broadmark {
 
@@ -63,7 +64,10 @@ class FrameProvider {
   std::shared_ptr<Written> written_;  ///< read by frames_; null for a recording
 };
 
-/// Opens a source; each call returns a new provider. Throws InputError.
-using FrameProviderOpener = std::function<std::unique_ptr<FrameProvider>()>;
+/// Opens a source; each call returns a new provider, with its simulation in the host. Throws
+/// InputError, and Cancelled soon after `cancelled` returns true, as does a simulation's next
+/// frame.
+using FrameProviderOpener = std::function<std::unique_ptr<FrameProvider>(
+    const SimulationHost& host, const CancelQuery& cancelled)>;
 
 }  // namespace broadmark

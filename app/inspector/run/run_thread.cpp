@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "support/words.h"
+
 namespace broadmark {
 namespace {
 
@@ -16,6 +18,11 @@ constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
 bool sameSnapshot(const ViewRequest& a, const ViewRequest& b) {
   return a.check == b.check && a.shown_track == b.shown_track && a.structure == b.structure &&
          a.trail_bodies == b.trail_bodies && a.second == b.second;
+}
+
+/// Whether both show the same scene, maybe another version of it.
+bool isVersionOf(const FrameProviderRequest* a, const FrameProviderRequest* b) {
+  return a == b || (a != nullptr && b != nullptr && a->scene != 0 && a->scene == b->scene);
 }
 
 /// Number of overlapping pairs, computed from an algorithm's answer and its mismatches.
@@ -31,8 +38,16 @@ float fractionOf(std::uint32_t part, std::uint32_t whole) {
 
 }  // namespace
 
-RunThread::RunThread(ExecutorFactory make_executor)
-    : make_executor_(std::move(make_executor)), thread_([this] { loop(); }) {}
+RunThread::RunThread(ExecutorFactory make_executor, SimulationHost host)
+    : make_executor_(std::move(make_executor)),
+      host_(std::move(host)),
+      oracle_(makeOracle()),
+      second_oracle_(makeOracle()),
+      thread_([this] { loop(); }) {}
+
+Oracle RunThread::makeOracle() {
+  return Oracle(std::size_t{256} << 20, kMaxPairs, [this] { return isSourceCancelled(); });
+}
 
 RunThread::~RunThread() {
   {
@@ -54,7 +69,11 @@ void RunThread::request(ViewRequest request) {
 
 void RunThread::readProgress(const std::function<void(const RunProgress&)>& visitor) {
   const std::lock_guard lock(mutex_);
-  visitor(progress_);
+  if (isVersionOf(requested_.source.get(), progress_.source.get())) {
+    visitor(progress_);
+  } else {
+    visitor({.activity = progress_.activity, .fraction = progress_.fraction});
+  }
 }
 
 bool RunThread::isIdle() {
@@ -126,6 +145,17 @@ void RunThread::publishFailure(std::string reason) {
   progress_.failure = std::move(reason);
 }
 
+bool RunThread::isSourceCancelled() {
+  const std::lock_guard lock(mutex_);
+  return stopping_ || requested_.source != open_source_;
+}
+
+bool RunThread::isSecondSourceCancelled() {
+  if (isSourceCancelled()) return true;
+  const std::lock_guard lock(mutex_);
+  return !requested_.second || requested_.second->source != second_.opened;
+}
+
 bool RunThread::isTrackCancelled(const TrackSpec& spec) {
   const std::lock_guard lock(mutex_);
   return stopping_ || requested_.source != open_source_ ||
@@ -150,14 +180,19 @@ void RunThread::openSource() {
   tracks_.clear();
   second_ = {};
   provider_.reset();
-  oracle_ = Oracle(std::size_t{256} << 20, kMaxPairs);
+  oracle_ = makeOracle();
   cache_.clear();
   stop_.reset();
   snapshots_valid_ = false;
   open_source_ = current_.source;
   std::string failure;
   try {
-    if (open_source_) provider_ = open_source_->open();
+    if (open_source_) {
+      provider_ = open_source_->open(host_, [this] { return isSourceCancelled(); });
+    }
+  } catch (const Cancelled&) {
+    open_source_.reset();  // it is opened again if it is requested again
+    throw;
   } catch (const std::exception& error) {
     failure = error.what();
   }
@@ -168,6 +203,42 @@ void RunThread::openSource() {
   progress_.available_frames = provider_->lastAvailable();
   progress_.live = provider_->live();
   progress_.frames = provider_->opener();
+}
+
+void RunThread::openSecondSource() {
+  const auto& source = current_.second->source;
+  publishActivity(fmt::format("opening {}", source ? source->title : ""), 1);
+  snapshots_valid_ = false;
+  second_ = {.opened = source};
+  try {
+    if (source) {
+      second_.provider = source->open(host_, [this] { return isSecondSourceCancelled(); });
+    }
+  } catch (const Cancelled&) {
+    second_ = {};
+    throw;
+  } catch (const std::exception& error) {
+    second_.failure = error.what();
+  }
+}
+
+void RunThread::simulateNext(FrameProvider& provider) {
+  const std::uint32_t next = provider.lastAvailable() + 1;
+  const bool second = &provider != provider_.get();
+  publishActivity(fmt::format("simulating frame {} of {}{}", next,
+                              counted(provider.scene().objects, "body", "bodies"),
+                              second ? " for the second view" : ""),
+                  second ? 1 : fractionOf(next - 1, std::max(target(), next)));
+  try {
+    provider.simulateNext();
+  } catch (const Cancelled&) {  // opened again if it is requested again
+    if (second) {
+      second_ = {};
+    } else {
+      open_source_.reset();
+    }
+    throw;
+  }
 }
 
 /// Adds and removes tracks to match the request. Returns whether any changed.
@@ -231,9 +302,7 @@ bool RunThread::advance() {
   const std::uint32_t needed =
       std::max(target(), std::min(second_frame, provider_->scene().frames));
   if (provider_->lastAvailable() < needed) {
-    publishActivity(fmt::format("simulating frame {}", provider_->lastAvailable() + 1),
-                    fractionOf(provider_->lastAvailable(), needed));
-    provider_->simulateNext();
+    simulateNext(*provider_);
     if (!provider_->scene().all_present) frameAt(provider_->lastAvailable());
     const std::lock_guard lock(mutex_);
     progress_.available_frames = provider_->lastAvailable();
@@ -353,23 +422,14 @@ AlgorithmTrack* RunThread::secondTrack() {
 /// Advances the second view by one step. Returns false if it is up to date.
 bool RunThread::advanceSecond() {
   if (!current_.second) return false;
-  if (const auto& source = current_.second->source; source != second_.opened) {
-    publishActivity(fmt::format("opening {}", source ? source->title : ""), 1);
-    snapshots_valid_ = false;
-    second_ = {.opened = source};
-    try {
-      if (source) second_.provider = source->open();
-    } catch (const std::exception& error) {
-      second_.failure = error.what();
-    }
+  if (current_.second->source != second_.opened) {
+    openSecondSource();
     return true;
   }
   FrameProvider* const provider = secondProvider();
   if (provider == nullptr) return false;
   if (provider->lastAvailable() < secondTarget()) {
-    publishActivity(
-        fmt::format("simulating frame {} for the second view", provider->lastAvailable() + 1), 1);
-    provider->simulateNext();
+    simulateNext(*provider);
     snapshots_valid_ = false;
     return true;
   }

@@ -90,15 +90,16 @@ class RunThread {
   /// Memory budget of the cached answers.
   static constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
 
-  /// `make_executor`: where algorithms run.
-  explicit RunThread(ExecutorFactory make_executor);
-  /// Cancels the work; waits for the current frame only if its executor cannot be cancelled.
+  /// Where algorithms and simulations run.
+  RunThread(ExecutorFactory make_executor, SimulationHost host);
+  /// Cancels the work; waits for the current frame only if it cannot be cancelled where it runs.
   ~RunThread();
   RunThread(const RunThread&) = delete;
   RunThread& operator=(const RunThread&) = delete;
 
   void request(ViewRequest request);
-  /// Calls `visitor` with the progress, under its lock.
+  /// Calls `visitor` with the progress, under its lock. While another source than the requested one
+  /// is open, there is only an activity: what it waits for.
   void readProgress(const std::function<void(const RunProgress&)>& visitor);
   /// Whether the latest request has been completed or has failed.
   [[nodiscard]] bool isIdle();
@@ -111,7 +112,11 @@ class RunThread {
   void loop();
   void applyRequest();
   bool step();
+  Oracle makeOracle();
   void openSource();
+  void openSecondSource();
+  /// Simulates the next frame of the open source or of the second view's.
+  void simulateNext(FrameProvider& provider);
   bool updateTracks();
   bool advance();
   bool advanceTrack(AlgorithmTrack& track, const Frame& frame);
@@ -122,6 +127,10 @@ class RunThread {
   void publishActivity(std::string activity, float fraction);
   void publishTrack(const AlgorithmTrack& track);
   void publishFailure(std::string reason);
+  /// Whether the latest request has another source.
+  [[nodiscard]] bool isSourceCancelled();
+  /// Whether the latest request has another source in the second view.
+  [[nodiscard]] bool isSecondSourceCancelled();
   /// Whether the latest request no longer includes a track with this spec.
   [[nodiscard]] bool isTrackCancelled(const TrackSpec& spec);
   /// Whether the latest request no longer needs the second view's instance.
@@ -144,6 +153,7 @@ class RunThread {
   bool publishCachedSnapshot();
 
   const ExecutorFactory make_executor_;
+  const SimulationHost host_;
   DrawGate draw_gate_;
 
   // Accessed only by the thread.
@@ -151,7 +161,7 @@ class RunThread {
   std::shared_ptr<const FrameProviderRequest> open_source_;
   std::unique_ptr<FrameProvider> provider_;
   std::vector<std::unique_ptr<AlgorithmTrack>> tracks_;
-  Oracle oracle_{std::size_t{256} << 20};
+  Oracle oracle_;
   AnswerCache cache_{kCacheBytes};
   std::optional<RunProgress::Stop> stop_;
   struct {
@@ -160,7 +170,7 @@ class RunThread {
     std::string failure = {};                                 ///< why `provider` is null
     std::unique_ptr<AlgorithmTrack> track = {};  ///< a separate instance, if one is needed
   } second_;                                     ///< state of the second view
-  Oracle second_oracle_{std::size_t{256} << 20};
+  Oracle second_oracle_;
   bool snapshots_valid_ = false;  ///< the published snapshots match current_
   bool cache_tried_ = false;      ///< publishCachedSnapshot() was called for current_
 

@@ -18,6 +18,7 @@ struct AnswerText {
   std::string answer;      ///< "faulty reports 352 pairs"
   std::string comparison;  ///< "the oracle finds 353: 1 missed"
   std::string pair;  ///< which algorithms find the two selected bodies; "" unless two are selected
+  std::string waiting;  ///< what delays the requested frame; "": nothing
 };
 
 /// `chosen`: number of the selected track, which may have no answer for this frame.

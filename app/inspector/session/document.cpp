@@ -22,7 +22,9 @@ FrameProviderOpener staticSource(const scenes::AuthoredScene& scene) {
                        .world = scene.world,
                        .filter = scenes::collisionFilterOf(scene)};
   const auto boxes = std::make_shared<const std::vector<Aabb>>(boxesOf(scene));
-  return [info, boxes] { return std::make_unique<FrameProvider>(info, *boxes); };
+  return [info, boxes](const SimulationHost&, const CancelQuery&) {
+    return std::make_unique<FrameProvider>(info, *boxes);
+  };
 }
 
 }  // namespace
@@ -48,11 +50,13 @@ void Document::loadCurrentFrame() {
                        .shown = {},
                        .scene = std::make_shared<scenes::AuthoredScene>()};
   playback_.show({.open =
-                      [previous = pending.previous, frame = pending.frame, scene = pending.scene] {
-                        const std::unique_ptr<FrameProvider> provider = previous->open();
+                      [previous = pending.previous, frame = pending.frame, scene = pending.scene](
+                          const SimulationHost& host, const CancelQuery& cancelled) {
+                        const std::unique_ptr<FrameProvider> provider =
+                            previous->open(host, cancelled);
                         while (provider->lastAvailable() < frame) provider->simulateNext();
                         *scene = provider->authoredScene(frame);
-                        return staticSource(*scene)();
+                        return staticSource(*scene)(host, cancelled);
                       },
                   .origin = FrameOrigin::authored,
                   .title = fmt::format("frame {} of {}", pending.frame, pending.previous->title)});
@@ -113,8 +117,9 @@ void Document::show() { showFrames(staticSource(editor.scene()), false); }
 void Document::simulate() {
   const auto scene = std::make_shared<const scenes::AuthoredScene>(editor.scene());
   showFrames(
-      [scene, path = path()] {
-        return std::make_unique<FrameProvider>(scenes::makeAuthoredSimulation(*scene, path));
+      [scene, path = path()](const SimulationHost& host, const CancelQuery& cancelled) {
+        return std::make_unique<FrameProvider>(
+            host(scenes::makeAuthoredSimulation(*scene, path), cancelled));
       },
       true);
 }
@@ -133,7 +138,8 @@ bool Document::save(fs::path path) {
 
 void Document::bake(fs::path path) {
   if (!path.has_extension()) path += recordingExtension(simulation()->scene());
-  notices_.catchErrors([&] { startBake(bake_, simulation(), std::move(path)); });
+  notices_.catchErrors(
+      [&] { startBake(jobs_.get<BackgroundBake>(), simulation(), std::move(path), jobs_.host); });
 }
 
 void Document::closeThen(std::function<void()> then) {

@@ -13,7 +13,7 @@
 #include "broadmark/names.h"
 #include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene_editor.h"
-#include "inspector/jobs/background_bake.h"
+#include "inspector/jobs/jobs.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
 
@@ -44,8 +44,8 @@ struct Tools {
 class Document {
  public:
   /// The arguments must outlive this object.
-  Document(Playback& playback, Notices& notices, BackgroundBake& bake)
-      : playback_(playback), notices_(notices), bake_(bake) {
+  Document(Playback& playback, Notices& notices, Jobs& jobs)
+      : playback_(playback), notices_(notices), jobs_(jobs) {
     chooseBrush(0);
   }
 
@@ -122,7 +122,7 @@ class Document {
 
   Playback& playback_;
   Notices& notices_;
-  BackgroundBake& bake_;
+  Jobs& jobs_;
   std::filesystem::path path_;
   bool unsaved_ = false;  ///< the loaded scene differs from its file
   std::size_t chosen_brush_ = 0;

@@ -32,9 +32,10 @@ std::string parametersOf(const Recording& recording, const fs::path& path) {
 FrameProviderRequest simulationSource(Simulation& simulation, ParameterValues reading) {
   const std::string text = formatSceneParameters(simulation);
   return {.open =
-              [text, reading = std::move(reading)] {
+              [text, reading = std::move(reading)](const SimulationHost& host,
+                                                   const CancelQuery& cancelled) {
                 return std::make_unique<FrameProvider>(
-                    parseSceneParameters(text, "scene parameters"), reading);
+                    host(parseSceneParameters(text, "scene parameters"), cancelled), reading);
               },
           .origin = FrameOrigin::simulation,
           .title = simulation.listing().name,
@@ -45,10 +46,11 @@ FrameProviderRequest recordingSource(const fs::path& path, const std::string& ha
                                      ParameterValues reading) {
   // Open the file here, too, so that an invalid one is reported at once.
   const std::string parameters = parametersOf(*openRecordingFile(path), path);
-  const auto open = [path, hash, reading = std::move(reading)] {
+  const auto open = [path, hash, reading = std::move(reading)](const SimulationHost&,
+                                                               const CancelQuery& cancelled) {
     std::unique_ptr<Recording> recording = openRecordingFile(path);
     if (!hash.empty()) {
-      requireHash(path.string(), adaptedHash(recording->hash(), reading), hash);
+      requireHash(path.string(), adaptedHash(recording->hash(cancelled), reading), hash);
     }
     return std::make_unique<FrameProvider>(std::move(recording), reading);
   };
@@ -60,7 +62,9 @@ FrameProviderRequest recordingSource(const fs::path& path, const std::string& ha
 }
 
 FrameProviderRequest importSource(const RecordingReference& reference, ParameterValues reading) {
-  const auto open = [reference, reading = std::move(reading)]() -> std::unique_ptr<FrameProvider> {
+  const auto open = [reference, reading = std::move(reading)](
+                        const SimulationHost&,
+                        const CancelQuery&) -> std::unique_ptr<FrameProvider> {
     ReadingOptions options;
     setParameters(options, reference.reading);
     const auto import = importOf(reference.path, options.format.value);

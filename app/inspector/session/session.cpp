@@ -19,8 +19,11 @@ constexpr std::size_t kMaxTrails = 2;
 
 }  // namespace
 
-Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_executor)
-    : tracks(std::move(algorithms)), jobs(make_executor), runs(std::move(make_executor)) {
+Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_executor,
+                 SimulationHost host)
+    : tracks(std::move(algorithms)),
+      jobs(make_executor, host),
+      runs(std::move(make_executor), std::move(host)) {
   playback.on_source_change = [this] {
     selection.reset();
     mismatches.reset();
@@ -36,6 +39,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   reportFinishedJobs();
   available_frames_ = progress.available_frames;
   open_frames_ = progress.source == playback.source() ? progress.frames : nullptr;
+  waited_seconds_ = playback.hasReached(progress) ? 0 : waited_seconds_ + seconds;
   if (!playback.update(progress)) return;
   timeline.update(playback.source(), playback.lastFrame(), playback.frame());
   reportFailure(progress);
@@ -45,6 +49,11 @@ void Session::advance(const RunProgress& progress, double seconds) {
 }
 
 bool Session::busy() { return playback.playing() || !runs.isIdle() || jobs.running(); }
+
+std::string Session::waitsFor(const RunProgress& progress) const {
+  constexpr double kPatienceSeconds = 0.5;
+  return waited_seconds_ > kPatienceSeconds ? progress.activity : "";
+}
 
 ViewRequest Session::request() const {
   ViewRequest request{.source = playback.source(),

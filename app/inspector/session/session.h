@@ -27,9 +27,11 @@ namespace broadmark {
 /// involve several of them.
 class Session {
  public:
-  /// The available algorithms, and the factory of the executors that run them.
+  /// The available algorithms, the factory of the executors that run them, and where simulations
+  /// run.
   explicit Session(std::vector<Algorithm> algorithms,
-                   ExecutorFactory make_executor = makeInProcessExecutor);
+                   ExecutorFactory make_executor = makeInProcessExecutor,
+                   SimulationHost host = simulateInProcess);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -39,6 +41,8 @@ class Session {
   void postRequest();
   /// Whether playback, algorithms or jobs are running.
   [[nodiscard]] bool busy();
+  /// What the requested frame has been waiting for; "" if it has not for long.
+  [[nodiscard]] std::string waitsFor(const RunProgress& progress) const;
 
   /// Plays or pauses; playing a document at rest simulates it.
   void play(bool on);
@@ -79,7 +83,7 @@ class Session {
   Timeline timeline;
   TrackList tracks;
   Jobs jobs;
-  Document document{playback, notices, jobs.get<BackgroundBake>()};
+  Document document{playback, notices, jobs};
   BodySelection selection{playback, document};
   Mismatches mismatches{playback, tracks, selection, notices};
   Draft draft{playback};
@@ -104,6 +108,7 @@ class Session {
   std::uint32_t available_frames_ = 0;
   FrameOpener open_frames_;  ///< opens the playback's frames; null: nothing is open
   ViewRequest posted_request_;
+  double waited_seconds_ = 0;  ///< for the requested frame
 };
 
 }  // namespace broadmark

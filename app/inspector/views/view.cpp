@@ -156,6 +156,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Inp
   camera_moved_ = camera_ != before;
   const std::string source = sourceText(input.snapshot->source.get());
   answer_.where = session.second ? fmt::format("frame {}, {}", input.snapshot->frame, source) : "";
+  answer_.waiting = input.waiting;
   const ImVec2 answer_end = drawAnswer(ui, answer_, corner_, size_);
   const bool tools = input.editable && session.document.shown();
   const float free_height = tools ? drawTools(ui, session, corner_, size_) : size_.y;
@@ -273,9 +274,12 @@ void View::drawAxisNames(float scale) const {
 
 void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position,
                  ImVec2 size) {
+  const std::string hint =
+      session.playback.source() ? progress.activity : "Simulate a scene, or drop a recording here";
   std::vector<View::Input> inputs = {{.name = "View",
                                       .snapshot = progress.snapshot,
-                                      .hint = "Simulate a scene, or drop a recording here",
+                                      .hint = hint,
+                                      .waiting = session.waitsFor(progress),
                                       .track = session.tracks.shown(),
                                       .editable = true}};
   if (session.second) {

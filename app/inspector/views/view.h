@@ -35,6 +35,7 @@ class View {
     const char* name = "";
     std::shared_ptr<const Snapshot> snapshot;  ///< null: draws `hint`
     std::string hint;                          ///< reason for drawing no scene
+    std::string waiting = {};                  ///< what delays the requested frame
     int track = 0;                             ///< number of the answer's track; 0: the oracle's
     bool editable = false;                     ///< the document's bodies can be moved
     const View* leader = nullptr;  ///< view to copy the camera from; null: its own camera

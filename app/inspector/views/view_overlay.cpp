@@ -69,6 +69,7 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
   add(large, answer.comparison,
       colour(ui.theme.*kVerdictColours[static_cast<std::size_t>(answer.verdict)]));
   add(normal, answer.pair, plain);
+  add(normal, answer.waiting, colour(ui.theme.accent));
 
   float width = 0;
   float height = 0;

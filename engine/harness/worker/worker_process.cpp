@@ -22,18 +22,6 @@ using Clock = std::chrono::steady_clock;
 /// Grace period before the process is killed.
 constexpr std::chrono::seconds kGracePeriod{5};
 
-std::string endText(int wait_status) {
-  if (WIFEXITED(wait_status)) {
-    return fmt::format("exited with status {}", WEXITSTATUS(wait_status));
-  }
-  const int signal = WTERMSIG(wait_status);
-  const char* name = ::sigabbrev_np(signal);
-  const std::string what =
-      fmt::format("SIG{} ({})", name == nullptr ? "?" : name, ::sigdescr_np(signal));
-  if (signal == SIGKILL) return "killed with " + what + ", possibly out of memory";
-  return "crashed with " + what;
-}
-
 /// Starts a command with these descriptors as 3, 4, …: its output goes to our standard error, which
 /// keeps a plug-in's output out of our results. Throws InputError when it cannot be started.
 ChildProcess start(std::vector<std::string> command, std::vector<int> descriptors) {
@@ -63,7 +51,7 @@ class Connection {
   ~Connection() {
     // Closing the channel ends the process, unless it hangs.
     channel_.reset();
-    if (alive()) process_.wait(kGracePeriod);
+    if (alive()) process_.wait(kGracePeriod, options_.cancelled);
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;

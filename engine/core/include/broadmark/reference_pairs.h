@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -33,8 +34,10 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& 
 inline constexpr std::size_t kUnlimitedPairs = std::numeric_limits<std::size_t>::max();
 
 /// The same pairs by an exact sweep within strips of the second axis: O(n log n + candidates).
-/// Tested against bruteForcePairs. Throws InputError if there are more than `max_pairs` pairs.
+/// Tested against bruteForcePairs. Throws InputError if there are more than `max_pairs` pairs, and
+/// Cancelled soon after `cancelled` returns true.
 std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {},
-                             const PeriodicBox& = {}, std::size_t max_pairs = kUnlimitedPairs);
+                             const PeriodicBox& = {}, std::size_t max_pairs = kUnlimitedPairs,
+                             const std::function<bool()>& cancelled = {});
 
 }  // namespace broadmark

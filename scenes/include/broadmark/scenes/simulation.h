@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -119,11 +120,13 @@ std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::str
 std::string formatSceneParameters(Simulation&);
 
 /// Whether `path` is a complete recording baked with exactly these parameters and from an input
-/// with the current inputHash(), according to its sidecar, and has the sidecar's hash.
-bool isBaked(const std::filesystem::path& path, Simulation& simulation);
+/// with the current inputHash(), according to its sidecar, and has the sidecar's hash. Throws
+/// Cancelled, as does isIntact().
+bool isBaked(const std::filesystem::path& path, Simulation& simulation,
+             const std::function<bool()>& cancelled = {});
 /// Whether `path` is an intact baked recording, of any origin: it has the hash in its
 /// sidecar.
-bool isIntact(const std::filesystem::path& path);
+bool isIntact(const std::filesystem::path& path, const std::function<bool()>& cancelled = {});
 
 /// The hash in a recording's sidecar; nullopt without a sidecar, or if the file there has
 /// another schema. Throws InputError if a sidecar contains no hash.

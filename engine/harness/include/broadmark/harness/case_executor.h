@@ -124,9 +124,6 @@ class InProcessExecutor final : public CaseExecutor {
   PairEvents events_;
 };
 
-/// Polled during long work; true ends the work.
-using CancelQuery = std::function<bool()>;
-
 /// Creates the executor of a case. An executor with long waits throws Cancelled soon after
 /// `cancelled` returns true.
 using ExecutorFactory =

@@ -12,6 +12,10 @@
 
 namespace broadmark {
 
+/// How a process ended, from its status as of waitpid(): "crashed with SIGSEGV (Segmentation
+/// fault)".
+std::string endText(int wait_status);
+
 class ChildProcess {
  public:
   struct Options {

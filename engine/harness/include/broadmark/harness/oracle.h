@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -18,16 +19,21 @@
 
 namespace broadmark {
 
+/// Polled during long work; true ends the work.
+using CancelQuery = std::function<bool()>;
+
 /// Computes correct answers, and caches them within a budget. The key is the hash of boxes, filter
 /// and periodic box: two scenes may share an oracle, and equal frames share an answer.
 class Oracle {
  public:
-  /// `max_pairs`: the limit of pairs per frame.
-  explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30,
-                  std::size_t max_pairs = kUnlimitedPairs)
-      : budget_bytes_(budget_bytes), max_pairs_(max_pairs) {}
+  static constexpr std::size_t kBudgetBytes = std::size_t{1} << 30;
 
-  // Both throw InputError beyond the limit of pairs.
+  /// `max_pairs`: the limit of pairs per frame.
+  explicit Oracle(std::size_t budget_bytes = kBudgetBytes, std::size_t max_pairs = kUnlimitedPairs,
+                  CancelQuery cancelled = {})
+      : budget_bytes_(budget_bytes), max_pairs_(max_pairs), cancelled_(std::move(cancelled)) {}
+
+  // These throw InputError beyond the limit of pairs, and Cancelled.
 
   /// The overlapping wanted pairs of these boxes, ascending; valid until the next call.
   std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {},
@@ -53,6 +59,7 @@ class Oracle {
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
   std::size_t max_pairs_;
+  CancelQuery cancelled_;
 };
 
 /// The differences of an answer from the correct one in one frame.

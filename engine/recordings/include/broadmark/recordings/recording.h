@@ -67,8 +67,9 @@ class Recording : public IndexedFrames {
  public:
   [[nodiscard]] const SceneInfo& scene() const final { return scene_; }
 
-  /// XXH3-128 of the whole file as 32 hex digits; computed on first use.
-  const std::string& hash();
+  /// XXH3-128 of the whole file as 32 hex digits; computed on first use. Throws Cancelled soon
+  /// after `cancelled` returns true.
+  const std::string& hash(const std::function<bool()>& cancelled = {});
 
   /// The path, or a substitute for messages.
   [[nodiscard]] const std::string& name() const final { return name_; }
