@@ -11,6 +11,7 @@ namespace {
 using Eigen::Map;
 using Eigen::Vector3f;
 
+constexpr float kNearPlane = 0.02F;  // as a fraction of the distance
 constexpr float kFullTurn = 2 * std::numbers::pi_v<float>;
 
 /// From the pivot to the eye.
@@ -135,23 +136,12 @@ OrbitCamera focusedOn(OrbitCamera camera, const Aabb& box, double aspect) {
   return withPivot(camera, centreOf(box));
 }
 
-OrbitCamera cutAway(OrbitCamera camera, const Aabb& box) {
-  constexpr float kMarginFactor = 0.98F;
-  const Vector3f half_sides = (Vector3f(box.max.data()) - Vector3f(box.min.data())) / 2;
-  const float towards_eye = (centreOf(box) - pivotOf(camera)).dot(backwards(camera)) +
-                            half_sides.dot(backwards(camera).cwiseAbs());
-  camera.cut = std::clamp(kMarginFactor * (1 - towards_eye / camera.distance), OrbitCamera::kUncut,
-                          kMarginFactor);
-  return camera;
-}
-
 OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t) {
   const float s = smooth(t);
   if (s >= 1) return to;
   OrbitCamera camera = from;
   camera.yaw = from.yaw + s * wrappedAngle(to.yaw - from.yaw);
   camera.pitch = std::lerp(from.pitch, to.pitch, s);
-  camera.cut = std::lerp(from.cut, to.cut, s);
   camera.field_of_view = std::lerp(from.field_of_view, to.field_of_view, s);
   camera.distance = from.distance * std::pow(to.distance / from.distance, s);
   // The pivot moves in proportion to the distance. Otherwise the new pivot would leave the picture
@@ -183,7 +173,7 @@ Camera toCamera(const OrbitCamera& orbit, double aspect, const Aabb& contents) {
   // The near plane depends on the pivot's distance. Planes close to the contents increase the depth
   // precision.
   const auto [nearest, farthest] = distancesTo(contents, eye);
-  camera.near = std::max(orbit.cut * orbit.distance, 0.5F * nearest);
+  camera.near = std::max(kNearPlane * orbit.distance, 0.5F * nearest);
   camera.far = std::max(1.02F * farthest, 2 * camera.near);
   return camera;
 }

@@ -89,10 +89,14 @@ void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTe
   for (const std::uint32_t body : content.selected) {
     if (body < is_selected.size()) is_selected[body] = true;
   }
-  const auto is_visible = [&](std::size_t body) {
+  const auto is_glass = [&](std::size_t body) {
+    return !content.glass.empty() && content.glass[body] != 0;
+  };
+  const auto is_shown = [&](std::size_t body) {
     if (isEmpty(content.boxes[body])) return false;
     return content.visible.empty() || content.visible[body] != 0;
   };
+  const auto is_visible = [&](std::size_t body) { return is_shown(body) && !is_glass(body); };
   // The visible bodies of a worker's share follow those of the previous workers.
   const std::size_t count = content.boxes.size();
   std::vector<std::size_t> begins(static_cast<std::size_t>(team.size()) + 1, 0);
@@ -116,6 +120,16 @@ void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTe
       *box++ = boxPrimitive(content.boxes[body], colour, content.space, kBoxShading.min_pixels);
     }
   });
+  scene.glass.clear();
+  std::vector<Primitive>& edges = scene.lines[ScenePrimitives::glass_edges].lines;
+  edges.clear();
+  for (std::size_t body = 0; body < content.glass.size(); ++body) {
+    if (!is_glass(body) || !is_shown(body)) continue;
+    scene.glass.push_back(boxPrimitive(content.boxes[body], content.colours[body], content.space,
+                                       kBoxShading.min_pixels));
+    append(edges,
+           wireframe(content.boxes[body], content.colours[body], content.scale, content.space));
+  }
 }
 
 void setOutlines(ScenePrimitives& scene, const SceneViewContent& content) {

@@ -13,21 +13,24 @@ namespace broadmark {
 
 /// Lines with the same visibility.
 struct LineLayer {
+  float opacity = 1;
   float opacity_behind = 0;      ///< of parts hidden by boxes
   bool where_no_box_is = false;  ///< behind all boxes, at any distance
   std::vector<Primitive> lines;
 };
 
 /// Primitives, drawn in the order of the members: boxes with depth test; the floor in pixels
-/// without a box; lines, tested against the depths of the boxes.
+/// without a box; glass, then lines, tested against the depths of the boxes.
 struct ScenePrimitives {
   std::vector<Primitive> boxes;
   std::vector<Primitive> floor;  ///< a flat box, or none
+  std::vector<Primitive> glass;  ///< transparent boxes, which hide nothing
 
-  enum Layer { grid, world, hidden, faint, shown, outlines, layers };
+  enum Layer { grid, world, glass_edges, hidden, faint, shown, outlines, layers };
   std::array<LineLayer, layers> lines = {
       LineLayer{.where_no_box_is = true},               // grid
       LineLayer{},                                      // world
+      LineLayer{.opacity = kLineShading.glass},         // glass_edges
       LineLayer{},                                      // hidden
       LineLayer{.opacity_behind = kLineShading.faint},  // faint
       LineLayer{.opacity_behind = 1},                   // shown

@@ -185,6 +185,7 @@ class SceneView::Painter {
   struct Uploaded {
     PrimitiveBuffer boxes;
     PrimitiveBuffer floor;
+    PrimitiveBuffer glass;
     std::array<PrimitiveBuffer, ScenePrimitives::layers> lines;
   };
   void upload(bool bodies, bool lines) {
@@ -195,7 +196,8 @@ class SceneView::Painter {
     };
     if (bodies) {
       uploaded_.boxes = boxes_.upload(scene_.boxes);
-      upload_layers({ScenePrimitives::outlines});
+      uploaded_.glass = boxes_.upload(scene_.glass);
+      upload_layers({ScenePrimitives::outlines, ScenePrimitives::glass_edges});
     }
     if (lines) {
       upload_layers({ScenePrimitives::hidden, ScenePrimitives::faint, ScenePrimitives::shown});
@@ -219,6 +221,7 @@ class SceneView::Painter {
     boxes_.draw(uploaded_.floor, viewpoint);
     gl_->DepthRange(0, 1);
     gl_->Enable(GL_BLEND);
+    boxes_.draw(uploaded_.glass, viewpoint, kBoxShading.glass);
     for (int layer = 0; layer < ScenePrimitives::layers; ++layer) {
       drawLines(static_cast<ScenePrimitives::Layer>(layer), viewpoint);
     }
@@ -237,7 +240,7 @@ class SceneView::Painter {
       gl_->DepthFunc(GL_LEQUAL);
     }
     if (style.where_no_box_is) gl_->DepthRange(1, 1);
-    lines_.draw(lines, viewpoint);
+    lines_.draw(lines, viewpoint, style.opacity);
     gl_->DepthRange(0, 1);
   }
 

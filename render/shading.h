@@ -16,6 +16,7 @@ struct BoxShading {
   /// The minimum width of a body in pixels: a sphere of this size always covers the centre of a
   /// pixel, so no body disappears.
   float min_pixels = 1.42F;
+  float glass = 0.02F;  ///< opacity of a transparent body's faces
 };
 inline constexpr BoxShading kBoxShading;
 
@@ -24,6 +25,7 @@ struct LineShading {
   /// line.
   float lift = 0.001F;
   float faint = 0.28F;  ///< opacity of the hidden part of a faint line
+  float glass = 0.3F;   ///< opacity of a transparent body's edges
 };
 inline constexpr LineShading kLineShading;
 

@@ -87,9 +87,11 @@ void SoftwareRasterizer::setPrimitives(const ScenePrimitives& scene, int bands) 
   };
   set_boxes(floor_, scene.floor);
   set_boxes(bodies_, scene.boxes);
+  set_boxes(glass_, scene.glass);
   for (std::size_t i = 0; i < strips_.size(); ++i) {
     const LineLayer& from = scene.lines[i];
     StripLayer& layer = strips_[i];
+    layer.opacity = from.opacity;
     layer.opacity_behind = from.opacity_behind;
     layer.where_no_box_is = from.where_no_box_is;
     layer.lines = itemsOf<SplatLine>(from.lines);
@@ -99,7 +101,7 @@ void SoftwareRasterizer::setPrimitives(const ScenePrimitives& scene, int bands) 
 }
 
 void SoftwareRasterizer::project(const SplatView& view, int worker) {
-  for (BoxLayer* layer : {&floor_, &bodies_}) {
+  for (BoxLayer* layer : {&floor_, &bodies_, &glass_}) {
     layer->lists.fill(worker, [&](std::size_t first, std::size_t last, PixelRectangle* rectangles) {
       kernels_->project_boxes(view, layer->boxes.data(), first, last, rectangles);
     });
@@ -131,6 +133,11 @@ void SoftwareRasterizer::drawBand(const SplatView& view, std::uint32_t backgroun
     std::ranges::fill(worker.foremost, kNoBox);
     drawBoxes(view, *layer, number, band);
   }
+  glass_.lists.forEach(number,
+                       [&](std::span<const std::uint32_t> boxes, const PixelRectangle* rectangles) {
+                         kernels_->blend_boxes(view, glass_.boxes.data(), rectangles, boxes.data(),
+                                               boxes.size(), kBoxShading.glass, band);
+                       });
   for (const StripLayer& layer : strips_) drawLines(layer, number, band);
   for (int y = band.begin; y < band.end; ++y) {
     const auto from = worker.colours.begin() + std::ptrdiff_t{y - band.begin} * band.stride;
@@ -157,7 +164,7 @@ void SoftwareRasterizer::drawLines(const StripLayer& layer, int number,
         });
   };
   if (layer.opacity_behind > 0) draw({.behind = true, .opacity = layer.opacity_behind});
-  draw({.behind = false, .opacity = 1});
+  draw({.behind = false, .opacity = layer.opacity});
 }
 
 }  // namespace broadmark

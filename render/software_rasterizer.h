@@ -84,6 +84,7 @@ class SoftwareRasterizer {
     BandLists lists;
   };
   struct StripLayer {
+    float opacity = 1;
     float opacity_behind = 0;
     bool where_no_box_is = false;
     std::span<const SplatLine> lines;
@@ -108,6 +109,7 @@ class SoftwareRasterizer {
   std::vector<Worker> workers_;
   BoxLayer floor_;
   BoxLayer bodies_;
+  BoxLayer glass_;
   std::array<StripLayer, ScenePrimitives::layers> strips_;
   std::atomic<int> next_band_{0};
   std::vector<std::uint32_t> colours_;

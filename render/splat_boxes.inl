@@ -123,6 +123,25 @@ inline float nearestOf(const SplatView& view, const Corners<float>& box) {
   return nearest;
 }
 
+/// The depths at which rays enter and leave a box; they miss it if `enter` > `leave`.
+struct Crossing {
+  Floats enter;
+  Floats leave;
+};
+inline Crossing crossingOf(const Corners<float>& box, const Rays& rays) {
+  Crossing crossing;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Floats inverse = 1.0F / rays.direction[axis];
+    const Floats a = box.low[axis] * inverse;
+    const Floats b = box.high[axis] * inverse;
+    const Floats first = smaller(a, b);
+    const Floats last = larger(a, b);
+    crossing.enter = axis == 0 ? first : larger(crossing.enter, first);
+    crossing.leave = axis == 0 ? last : smaller(crossing.leave, last);
+  }
+  return crossing;
+}
+
 void splatBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectangle* rectangles,
                 const std::uint32_t* which, std::size_t count, const SplatBand& band) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -139,18 +158,7 @@ void splatBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectang
         const Floats before = load<Floats>(depths);
         // In a dense scene, most boxes are hidden by boxes drawn before.
         if (!any(before > nearest)) continue;
-        const Rays rays = raysFrom(view, x, y);
-        Floats enter;
-        Floats leave;
-        for (int axis = 0; axis < 3; ++axis) {
-          const Floats inverse = 1.0F / rays.direction[axis];
-          const Floats a = box.low[axis] * inverse;
-          const Floats b = box.high[axis] * inverse;
-          const Floats first = smaller(a, b);
-          const Floats last = larger(a, b);
-          enter = axis == 0 ? first : larger(enter, first);
-          leave = axis == 0 ? last : smaller(leave, last);
-        }
+        const auto [enter, leave] = crossingOf(box, raysFrom(view, x, y));
         std::uint32_t* foremost = band.boxes + row + x;
         const Ints hit = (enter <= leave) & (enter >= view.near) & (enter < before);
         store(depths, hit ? enter : before);
@@ -252,6 +260,32 @@ void shadeBoxes(const SplatView& view, const SplatBox* boxes, const SplatBand& b
           raysFrom(view, x, y), depth);
       store(colours, is_covered ? colour : load<Ints>(colours));
       store(depths, is_covered ? windowDepth(view, depth) : broadcast(1));
+    }
+  }
+}
+
+void blendBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectangle* rectangles,
+                const std::uint32_t* which, std::size_t count, float opacity,
+                const SplatBand& band) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const SplatBox& box = boxes[which[i]];
+    const PixelRectangle& rectangle = rectangles[which[i]];
+    const Corners<float> corners = cornersOf(view, box);
+    const Rows rows = rowsIn(band, rectangle);
+    for (int y = rows.begin; y < rows.end; ++y) {
+      const int row = (y - band.begin) * band.stride;
+      for (int x = rectangle.left; x <= rectangle.right; x += kLanes) {
+        const Rays rays = raysFrom(view, x, y);
+        const auto [enter, leave] = crossingOf(corners, rays);
+        const Ints hit = (enter <= leave) & (enter >= view.near) &
+                         (windowDepth(view, enter) <= load<Floats>(band.depths + row + x));
+        if (!any(hit)) continue;
+        std::uint32_t* colours = band.colours + row + x;
+        const auto under = load<Ints>(colours);
+        const Ints over = shaded(
+            view, [&](int) -> const SplatBox& { return box; }, rays, enter);
+        store(colours, hit ? blended(under, over, broadcast(opacity)) : under);
+      }
     }
   }
 }

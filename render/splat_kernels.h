@@ -100,6 +100,11 @@ struct SplatKernels {
   /// Shades the pixels covered by boxes, and converts the band's depths to window depths, 1 without
   /// a box.
   void (*shade_boxes)(const SplatView& view, const SplatBox* boxes, const SplatBand& band);
+  /// Blends boxes with these indices into the colours of a shaded band, where they are in front of
+  /// its depths.
+  void (*blend_boxes)(const SplatView& view, const SplatBox* boxes,
+                      const PixelRectangle* rectangles, const std::uint32_t* which,
+                      std::size_t count, float opacity, const SplatBand& band);
   /// Fills strips[i] and rectangles[i] for the lines [begin, end). `at_far_end`: their window depth
   /// is 1.
   void (*project_lines)(const SplatView& view, const SplatLine* lines, std::size_t begin,

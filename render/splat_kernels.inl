@@ -6,5 +6,5 @@
 #include "splat_boxes.inl"
 #include "splat_lines.inl"
 
-inline constexpr SplatKernels kKernels = {projectBoxes, splatBoxes, shadeBoxes, projectLines,
-                                          drawLines};
+inline constexpr SplatKernels kKernels = {projectBoxes, splatBoxes,   shadeBoxes,
+                                          blendBoxes,   projectLines, drawLines};

@@ -129,16 +129,6 @@ inline Span spanOf(const SplatStrip& strip, const PixelRectangle& rectangle, flo
   return span;
 }
 
-inline Ints blended(Ints under, Ints rgb, Floats alpha) {
-  Ints rgba = static_cast<int>(0xFF000000U) - Ints{};
-  for (int channel = 0; channel < 3; ++channel) {
-    const Floats from = __builtin_convertvector((under >> (8 * channel)) & 0xFF, Floats);
-    rgba |= __builtin_convertvector(mixed(from, channelOf(rgb, channel), alpha) + 0.5F, Ints)
-            << (8 * channel);
-  }
-  return rgba;
-}
-
 void drawLines(const SplatLine* lines, const SplatStrip* strips, const PixelRectangle* rectangles,
                const std::uint32_t* which, std::size_t count, const LinePass& pass,
                const SplatBand& band) {
@@ -147,6 +137,7 @@ void drawLines(const SplatLine* lines, const SplatStrip* strips, const PixelRect
     const SplatStrip& strip = strips[index];
     const PixelRectangle& rectangle = rectangles[index];
     const Ints rgb = static_cast<int>(lines[index].colour) - Ints{};
+    const Ints over = ((rgb >> 16) & 0xFF) | (rgb & 0xFF00) | ((rgb & 0xFF) << 16);
     const Rows rows = rowsIn(band, rectangle);
     for (int y = rows.begin; y < rows.end; ++y) {
       const int row = (y - band.begin) * band.stride;
@@ -165,7 +156,7 @@ void drawLines(const SplatLine* lines, const SplatStrip* strips, const PixelRect
                               (depth <= 1.0F) & (along >= 0.0F) & (along <= strip.length);
         if (!any(is_drawn & (covered > 0.0F))) continue;
         std::uint32_t* colours = band.colours + row + x;
-        store(colours, blended(load<Ints>(colours), rgb, is_drawn ? covered : Floats{}));
+        store(colours, blended(load<Ints>(colours), over, is_drawn ? covered : Floats{}));
       }
     }
   }

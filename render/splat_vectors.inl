@@ -60,6 +60,17 @@ inline Floats channelOf(Ints rgb, int channel) {
   return __builtin_convertvector((rgb >> (16 - 8 * channel)) & 0xFF, Floats);
 }
 
+/// Colours in memory order, mixed with the colours under them.
+inline Ints blended(Ints under, Ints over, Floats alpha) {
+  Ints rgba = static_cast<int>(0xFF000000U) - Ints{};
+  for (int shift = 0; shift < 24; shift += 8) {
+    const Floats from = __builtin_convertvector((under >> shift) & 0xFF, Floats);
+    const Floats to = __builtin_convertvector((over >> shift) & 0xFF, Floats);
+    rgba |= __builtin_convertvector(mixed(from, to, alpha) + 0.5F, Ints) << shift;
+  }
+  return rgba;
+}
+
 /// The depth in OpenGL's depth buffer, from 0 to 1.
 inline Floats windowDepth(const SplatView& view, Floats depth) {
   const float range = view.far - view.near;

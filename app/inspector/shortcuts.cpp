@@ -59,10 +59,7 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_H, false, false, "hide or show bodies without overlaps",
        [this] { session_.display.hide_free = !session_.display.hide_free; }},
       {GLFW_KEY_C, false, false, "next colouring",
-       [this] {
-         ++session_.display.colouring;
-         session_.display.filter.hidden_classes = 0;
-       }},
+       [this] { session_.display.colourBy(session_.display.colouring + 1); }},
       {GLFW_KEY_V, false, false, "open or close the second view",
        [this] { session_.showSecond(!session_.second); }},
       {GLFW_KEY_M, false, false, "authored scene: move gizmo on or off",

@@ -185,6 +185,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["algorithms"] = std::to_string(session.tracks.list.size());
   values["selection"] = fmt::format("{}", session.selection.bodies().size());
   values["colouring"] = std::to_string(session.display.colouring);
+  values["colours"] = session.display.colourMode().id;
   values["hide_free"] = yesOrNo(session.display.hide_free);
   values["pair_lines"] = yesOrNo(session.display.pair_lines);
   values["check"] = yesOrNo(session.mismatches.check);
@@ -218,6 +219,9 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addSecond(values, session, progress);
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
+  const auto& examined = session.mismatches.examined();
+  values["examined"] = examined ? pairName(examined->pair) : "";
+  values["replaying"] = yesOrNo(session.playback.replaying());
   values["searching"] = yesOrNo(session.mismatches.searching());
   addCases(values, session.results);
   return values;
@@ -238,6 +242,9 @@ std::optional<std::string> Inspector::value(const std::string& name) {
     values[prefix + "answer"] = view.answer().answer;
     values[prefix + "oracle"] = view.answer().comparison;
     values[prefix + "pair"] = view.answer().pair;
+    const auto& deciding = view.content().deciding_axis;
+    values[prefix + "axis"] = deciding ? kAxes[deciding->axis] : "";
+    values[prefix + "glass"] = std::to_string(view.content().glassBodies());
     values[prefix + "yaw"] = fmt::format("{:.4f}", view.camera().yaw);
     values[prefix + "distance"] = fmt::format("{:.4f}", view.camera().distance);
   }

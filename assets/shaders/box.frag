@@ -2,6 +2,7 @@
 // A face with dark edges of even width in pixels, fading with distance.
 uniform vec3 haze;
 uniform float focus;  // distance from the eye to what it looks at
+uniform float opacity;
 
 // The shading of boxes, from shading.h.
 uniform float edge_pixels;
@@ -27,5 +28,5 @@ void main() {
   face *= 1.0 - edge_darkness * edge;
   float depth = 1.0 / gl_FragCoord.w;
   float far_away = smoothstep(focus + haze_range.x, focus + haze_range.y, depth);
-  colour = vec4(mix(face, haze, most_haze * far_away), 1);
+  colour = vec4(mix(face, haze, most_haze * far_away), opacity);
 }

@@ -17,6 +17,7 @@
 #include "broadmark/render/framebuffer.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
+#include "inspector/views/view_content.h"
 #include "support/pictures.h"
 #include "support/places.h"
 
@@ -162,6 +163,60 @@ TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
     if (value("frame") == wrong) ++arrived;
   }
   EXPECT_EQ(arrived, 3);
+}
+
+TEST_F(InspectorTest, AMissedPairIsSingledOutAndReplayed) {
+  Session& session = inspector.session();
+  session.draft.choose("brownian");
+  setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "60"}});
+  session.draft.simulate();
+  setParameters(*session.tracks.add("faulty").parameters, {{"fat_margin", "0.5"}});
+  session.tracks.applyEdits();
+  session.display.colourBy(1);
+  session.display.filter.hidden_classes = 2;
+  waitUntilIdle();
+  session.mismatches.goToNext({});
+  waitUntilIdle();
+  const std::string wrong = value("frame");
+  const std::string pair = value("pair");
+  ASSERT_EQ(value("stop_frame"), wrong) << "the fault did not show";
+  EXPECT_EQ(value("examined"), pair);
+  EXPECT_EQ(value("colours"), "correctness");
+  draw(60);  // the flight
+  ViewContent content;
+  session.runs.readProgress([&](const RunProgress& progress) {
+    content.update(progress.snapshot, nullptr, session, true);
+  });
+  const auto& bodies = session.selection.bodies();
+  EXPECT_EQ(content.picture.colours[bodies[0]], kDarkPalette.first);
+  EXPECT_EQ(content.picture.colours[bodies[1]], kDarkPalette.second);
+  EXPECT_NE(value("view.glass"), "0");
+  EXPECT_EQ(value("view.axis"), value("pair.axis"));
+
+  click("View/Replay");
+  std::vector<std::string> frames;
+  for (int picture = 0; picture < 300; ++picture) {
+    draw();
+    session.runs.waitUntilIdle(kForever);
+    if (frames.empty() || frames.back() != value("shown_frame")) {
+      frames.push_back(value("shown_frame"));
+    }
+  }
+  EXPECT_EQ(value("replaying"), "no");
+  const int last = std::stoi(wrong);
+  std::vector<std::string> expected = {wrong};
+  for (int frame = std::max(last - 10, 0); frame <= last; ++frame) {
+    expected.push_back(std::to_string(frame));
+  }
+  EXPECT_EQ(frames, expected);
+  EXPECT_EQ(value("pair"), pair);
+
+  key(GLFW_KEY_ESCAPE);
+  waitUntilIdle();
+  EXPECT_EQ(value("examined"), "");
+  EXPECT_EQ(value("view.glass"), "0");
+  EXPECT_EQ(session.display.colouring, 1U);
+  EXPECT_EQ(session.display.filter.hidden_classes, 2U);
 }
 
 TEST_F(InspectorTest, EverySizeCanBeDrawn) {

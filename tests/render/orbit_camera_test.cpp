@@ -188,19 +188,5 @@ TEST(OrbitCamera, DepthSuitsTheWholeWorldAndASingleBody) {
             100);
 }
 
-TEST(OrbitCamera, CuttingAwayBringsTheNearPlaneBeforeTheBox) {
-  const Aabb box{{0.1F, 0.1F, 0.1F}, {0.2F, 0.2F, 0.2F}};
-  const OrbitCamera orbit = cutAway(focusedOn(tilted(), box, kWideAspect), box);
-  const Camera camera = toCamera(orbit, kWideAspect, kUnit);
-  EXPECT_GT(camera.near, orbit.distance / 3);
-  for (unsigned i = 0; i < 8; ++i) {
-    const auto at =
-        project(camera, {i & 1U ? box.max[0] : box.min[0], i & 2U ? box.max[1] : box.min[1],
-                         i & 4U ? box.max[2] : box.min[2]});
-    ASSERT_TRUE(at.has_value());
-    EXPECT_GT((*at)[2], -1);
-  }
-}
-
 }  // namespace
 }  // namespace broadmark::tests

@@ -247,6 +247,28 @@ TEST_P(SceneViewTest, BodiesHideLinesUnlessTheyAreToBeShown) {
   EXPECT_TRUE(isRed(drawnWith(OcclusionStyle::shown)));
 }
 
+TEST_P(SceneViewTest, BodiesAreSeenThroughGlass) {
+  const Bodies bodies{{cube({0, 0, -3}, 3), cube({0, 0, 3}, 2)}, {kRed, kBlue}};
+  const std::vector<std::uint8_t> glass = {0, 1};
+  SceneViewContent content = contentOf(bodies);
+  const auto view = makeView();
+  view->draw(content, wholeWorld(Direction::front));
+  EXPECT_TRUE(isBlue(colourInTheMiddle(*view)));
+  content.glass = glass;
+  ++content.bodies_revision;
+  view->draw(content, wholeWorld(Direction::front));
+  const std::array<int, 3> through = colourInTheMiddle(*view);
+  EXPECT_TRUE(isRed(through));
+  view->draw(content, wholeWorld(Direction::back));  // behind the other body
+  EXPECT_TRUE(isRed(colourInTheMiddle(*view)));
+  const std::vector<std::uint8_t> visible = {1, 0};
+  content.visible = visible;
+  ++content.bodies_revision;
+  view->draw(content, wholeWorld(Direction::front));
+  const std::array<int, 3> alone = colourInTheMiddle(*view);
+  EXPECT_GT(through[2], alone[2]) << "the glass tints what is behind it";
+}
+
 TEST_P(SceneViewTest, SelectionIsSeenThroughOtherBodies) {
   const Bodies bodies{{cube({0, 0, -2}, 2), cube({0, 0, 2}, 4)}, {kBlue, kBlue}};
   const std::vector<std::uint32_t> selected = {0, 99};  // body 99 does not exist
@@ -324,6 +346,9 @@ TEST_P(SceneViewTest, BothTechniquesGiveTheSamePicture) {
       content.theme = direction == Direction::top ? kDarkPalette : kLightPalette;
       content.lines = lines;
       content.lines_revision = 1;
+      std::vector<std::uint8_t> glass(bodies.boxes.size());
+      for (std::size_t body = 0; body < glass.size(); body += 5) glass[body] = 1;
+      content.glass = glass;
       by_gl->draw(content, wholeWorld(direction));
       by_splat->draw(content, wholeWorld(direction));
       SCOPED_TRACE(std::to_string(count) + " bodies, " +
@@ -374,7 +399,10 @@ TEST(SoftwareRasterizer, GivesTheSamePictureWithEveryTeamAndInstructionSet) {
   const Bodies bodies = randomBodies(5000, 0.01F, 0.6F);
   const ViewSpace space = viewSpaceOf(kWorld);
   const std::vector<SceneLine> lines = randomLines(3000);
+  std::vector<std::uint8_t> glass(bodies.boxes.size());
+  for (std::size_t body = 0; body < glass.size(); body += 3) glass[body] = 1;
   SceneViewContent content = contentOf(bodies);
+  content.glass = glass;
   content.lines = lines;
   ThreadTeam alone(1);
   ScenePrimitives scene;

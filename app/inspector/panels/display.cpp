@@ -156,12 +156,11 @@ class DisplayPanel final : public Panel {
 
   void drawColours() {
     DisplayOptions& options = session.display;
-    const std::size_t before = options.colouring;
+    std::size_t chosen = options.colouring;
     std::vector<std::string> titles;
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
-    options.colouring %= titles.size();
-    ui.combo("colours", options.colouring, titles, "Meaning of the colours (C: next)");
-    if (options.colouring != before) options.filter.hidden_classes = 0;
+    ui.combo("colours", chosen, titles, "Meaning of the colours (C: next)");
+    options.colourBy(chosen);
     ui.faintParagraph(options.colourMode().help);
     const Snapshot* snapshot = progress->snapshot.get();
     if (options.colourMode().of_tests && snapshot != nullptr &&

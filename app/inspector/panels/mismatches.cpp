@@ -149,7 +149,7 @@ class MismatchesPanel final : public Panel {
                                       : "Select both bodies and move the camera to them",
           ui.theme.*kind->colour);
       if (row == 0) ui.note("first pair");
-      if (clicked) session.selection.flyToPair(pair);
+      if (clicked) session.mismatches.examine({pair, snapshot.frame});
     });
     std::uint64_t all = 0;
     for (const WrongKind& kind : kWrongKinds) all += snapshot.difference.*kind.count;

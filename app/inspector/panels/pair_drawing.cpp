@@ -8,11 +8,6 @@
 namespace broadmark {
 namespace {
 
-Rgb relationColour(const Palette& theme, AxisRelation::Type type) {
-  constexpr Rgb Palette::* kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
-  return theme.*kColours[static_cast<std::size_t>(type)];
-}
-
 /// Returns the shortest text that parses to the same float.
 std::string exactText(float value) { return fmt::format("{}", value); }
 

@@ -93,7 +93,7 @@ class SelectionPanel final : public Panel {
   void drawBodies(const Snapshot& snapshot) {
     const std::vector<std::uint32_t> bodies = session.selection.bodies();
     ui.heading(counted(bodies.size(), "body", "bodies").c_str());
-    if (ui.button("Fly there", "Move the camera there (F)")) session.selection.fly_to = bodies;
+    if (ui.button("Fly there", "Move the camera there (F)")) session.selection.flyToSelection();
     ImGui::BeginChild("bodies", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;

@@ -1,10 +1,11 @@
-// The selected bodies, and the bodies that the camera flies to.
+// The selected bodies, and those in focus: the camera flew to them.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -62,9 +63,22 @@ class BodySelection {
     select({pair.a, pair.b});
     flyToSelection();
   }
-  void flyToSelection() { fly_to = bodies(); }
+  void flyToSelection() { flyTo(bodies()); }
+  void flyTo(Bodies bodies) {
+    focus_ = bodies;
+    fly_to = std::move(bodies);
+  }
+  /// Bodies that the views show in front of all others: those of the last flight, while they are
+  /// selected.
+  [[nodiscard]] std::span<const std::uint32_t> focus() const {
+    return std::ranges::includes(bodies(), focus_) ? std::span(focus_)
+                                                   : std::span<const std::uint32_t>();
+  }
   /// Call when another source is shown.
-  void reset() { bodies_.clear(); }
+  void reset() {
+    bodies_.clear();
+    focus_.clear();
+  }
 
   /// Bodies to fly to, reset by the view; an empty list means all bodies.
   std::optional<Bodies> fly_to;
@@ -73,6 +87,7 @@ class BodySelection {
   const Playback& playback_;
   Document& document_;
   Bodies bodies_;  ///< selection in sources other than the document
+  Bodies focus_;   ///< ascending
 };
 
 }  // namespace broadmark

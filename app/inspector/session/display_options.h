@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "broadmark/aabb.h"
@@ -99,6 +100,12 @@ struct DisplayOptions {
 
   [[nodiscard]] const ColourMode& colourMode() const {
     return colourModes()[colouring % colourModes().size()];
+  }
+  /// Selects the colour mode with this index. Classes hidden in another one are shown.
+  void colourBy(std::size_t mode) {
+    if (std::exchange(colouring, mode % colourModes().size()) != colouring) {
+      filter.hidden_classes = 0;
+    }
   }
   friend bool operator==(const DisplayOptions&, const DisplayOptions&) = default;
 };

@@ -11,6 +11,7 @@
 
 #include "inspector/run/run_thread.h"
 #include "inspector/session/body_selection.h"
+#include "inspector/session/display_options.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
 #include "inspector/session/track_list.h"
@@ -35,14 +36,20 @@ inline std::optional<RunProgress::Stop> nextRecordedMismatch(const std::vector<T
 class Mismatches {
  public:
   /// The arguments must outlive this object.
-  Mismatches(Playback& playback, TrackList& tracks, BodySelection& selection, Notices& notices)
-      : playback_(playback), tracks_(tracks), selection_(selection), notices_(notices) {}
+  Mismatches(Playback& playback, TrackList& tracks, BodySelection& selection,
+             DisplayOptions& display, Notices& notices)
+      : playback_(playback),
+        tracks_(tracks),
+        selection_(selection),
+        display_(display),
+        notices_(notices) {}
 
   /// Handles a stop: shows its frame, then flies to the first wrong pair. An error of a track also
   /// stops the playback.
   void advance(const RunProgress& progress) {
     handleStop(progress);
     handleErrors(progress);
+    if (examined_ && selection_.bodies() != bodiesOf(examined_->pair)) endExamination();
     if (!playback_.hasReached(progress)) return;
     flyToStop(*progress.snapshot);
     if (std::exchange(searching_, false)) {
@@ -72,6 +79,36 @@ class Mismatches {
     playback_.seek(std::min(reached, playback_.frame()));
   }
 
+  /// A wrong pair, and the frame in which it is wrong.
+  struct Examined {
+    Pair pair;
+    std::uint32_t frame = 0;
+  };
+  /// Selects the pair and flies to it. Bodies are coloured by correctness until another selection.
+  void examine(const Examined& wrong) {
+    selection_.flyToPair(wrong.pair);
+    if (!examined_) {
+      former_colouring_ = display_.colouring;
+      former_hidden_classes_ = display_.filter.hidden_classes;
+    }
+    examined_ = wrong;
+    display_.colourBy(correctnessMode());
+  }
+  [[nodiscard]] const std::optional<Examined>& examined() const { return examined_; }
+  // Precondition: a pair is examined.
+  /// Replays the frames up to the examined pair's, or ends the replay there.
+  void toggleReplay() {
+    if (playback_.replaying()) {
+      playback_.goTo(examined_->frame);
+    } else {
+      playback_.replay(firstReplayed(), examined_->frame);
+    }
+  }
+  /// First frame of a replay.
+  [[nodiscard]] std::uint32_t firstReplayed() const {
+    return examined_->frame - std::min(examined_->frame, kReplayedFrames);
+  }
+
   /// Call when the user moves to another frame: ends a search. Moving forward from a mismatch
   /// acknowledges it.
   void onFrameChange(bool forward) {
@@ -91,6 +128,7 @@ class Mismatches {
     clearStop();
     pending_stop_.reset();
     searching_ = false;
+    endExamination();
   }
 
   /// See ViewRequest.
@@ -100,6 +138,18 @@ class Mismatches {
   bool stop_at_mismatch = true;  ///< while checking
 
  private:
+  /// Number of frames before the examined one that are replayed.
+  static constexpr std::uint32_t kReplayedFrames = 10;
+
+  static BodySelection::Bodies bodiesOf(Pair pair) { return {pair.a, pair.b}; }
+
+  /// Restores the colours, unless the user has chosen others.
+  void endExamination() {
+    if (!std::exchange(examined_, {}) || display_.colouring != correctnessMode()) return;
+    display_.colourBy(former_colouring_);
+    display_.filter.hidden_classes = former_hidden_classes_;
+  }
+
   void handleStop(const RunProgress& progress) {
     if (!progress.stop) {
       handled_stop_.reset();
@@ -144,18 +194,22 @@ class Mismatches {
     }
     pending_stop_.reset();
     const std::vector<WrongPair> wrong = wrongPairs(snapshot.difference);
-    if (!wrong.empty()) selection_.flyToPair(wrong.front().pair);
+    if (!wrong.empty()) examine({wrong.front().pair, snapshot.frame});
   }
 
   Playback& playback_;
   TrackList& tracks_;
   BodySelection& selection_;
+  DisplayOptions& display_;
   Notices& notices_;
   std::optional<std::uint32_t> acknowledged_;
   std::optional<RunProgress::Stop> handled_stop_;
   std::optional<RunProgress::Stop> pending_stop_;  ///< its pair has not been shown yet
   std::vector<TrackSpec> failed_;                  ///< tracks with errors that have been shown
   bool searching_ = false;
+  std::optional<Examined> examined_;
+  std::size_t former_colouring_ = 0;  ///< before the examination
+  std::uint64_t former_hidden_classes_ = 0;
 };
 
 }  // namespace broadmark

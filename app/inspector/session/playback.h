@@ -24,6 +24,7 @@ class Playback {
     frames_due_ = 0;
     scene_ = {};
     scene_loaded_ = false;
+    replay_end_.reset();
     on_source_change();
   }
 
@@ -40,10 +41,21 @@ class Playback {
     if (on && frame_ == scene_.frames && scene_.frames > 0) frame_ = 0;
     if (on) on_frame_change(true);
     playing_ = on;
+    replay_end_.reset();
     frames_due_ = 0;
   }
 
-  void pause() { playing_ = false; }
+  void pause() {
+    playing_ = false;
+    replay_end_.reset();
+  }
+  /// Shows the frames from `first` to `last` again, slowly. Cached answers are shown, without
+  /// running the algorithms.
+  void replay(std::uint32_t first, std::uint32_t last) {
+    goTo(first);
+    frames_due_ = 0;
+    if (frame_ < last) replay_end_ = last;
+  }
   void seek(std::int64_t frame) {
     // The number of frames is unknown while the source is being opened; update() clamps it then.
     const std::int64_t last =
@@ -82,6 +94,7 @@ class Playback {
     if (!playing_) {
       achieved_rate_.reset();
       window_seconds_ = window_frames_ = 0;
+      if (replaying() && hasReached(progress)) advanceReplay(seconds);
       return;
     }
     window_seconds_ += seconds;
@@ -116,6 +129,7 @@ class Playback {
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
   [[nodiscard]] std::uint32_t lastFrame() const { return scene_.frames; }
   [[nodiscard]] bool playing() const { return playing_; }
+  [[nodiscard]] bool replaying() const { return replay_end_.has_value(); }
 
   bool loop = false;
   ParameterValues reading;        ///< options that change the boxes of sources
@@ -131,13 +145,23 @@ class Playback {
   static constexpr double kRateWindowSeconds = 1;
   /// Maximum advance per step; a slow playback skips frames.
   static constexpr double kMaxFramesPerStep = 4;
+  static constexpr double kReplayRate = 5;  ///< frames per second
+
+  void advanceReplay(double seconds) {
+    frames_due_ += seconds * kReplayRate;
+    if (frames_due_ < 1) return;
+    frames_due_ = 0;
+    seek(frame_ + 1);
+    if (frame_ >= *replay_end_) replay_end_.reset();
+  }
 
   std::shared_ptr<const FrameProviderRequest> source_;
   std::uint32_t frame_ = 0;
   SceneInfo scene_;
   bool scene_loaded_ = false;  ///< the source has been opened
   bool playing_ = false;
-  double frames_due_ = 0;  ///< elapsed time, in frames
+  std::optional<std::uint32_t> replay_end_;  ///< last frame of a replay; nothing: none
+  double frames_due_ = 0;                    ///< elapsed time, in frames
   std::optional<double> achieved_rate_;
   double window_seconds_ = 0;
   int window_frames_ = 0;

@@ -48,7 +48,9 @@ void Session::advance(const RunProgress& progress, double seconds) {
   playback.advance(progress, seconds);
 }
 
-bool Session::busy() { return playback.playing() || !runs.isIdle() || jobs.running(); }
+bool Session::busy() {
+  return playback.playing() || playback.replaying() || !runs.isIdle() || jobs.running();
+}
 
 std::string Session::waitsFor(const RunProgress& progress) const {
   constexpr double kPatienceSeconds = 0.5;

@@ -85,9 +85,9 @@ class Session {
   Jobs jobs;
   Document document{playback, notices, jobs};
   BodySelection selection{playback, document};
-  Mismatches mismatches{playback, tracks, selection, notices};
-  Draft draft{playback};
   DisplayOptions display;
+  Mismatches mismatches{playback, tracks, selection, display, notices};
+  Draft draft{playback};
   std::optional<SecondViewRequest> second;  ///< nothing: no second view
   bool cameras_linked = true;               ///< one camera moves both views
   std::optional<OpenedResults> results;     ///< latest opened results

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <tuple>
+
 namespace broadmark {
 
 std::string pairName(Pair pair) { return fmt::format("{}-{}", pair.a, pair.b); }
@@ -22,6 +25,15 @@ AxisRelation axisRelation(std::size_t axis, const Aabb& a, const Aabb& b) {
   if (gap < 0) relation.type = AxisRelation::Type::overlap;
   if (gap == 0) relation.type = AxisRelation::Type::touch;
   return relation;
+}
+
+Aabb relationBox(const Aabb& a, const Aabb& b) {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::tie(box.min[axis], box.max[axis]) =
+        std::minmax({std::max(a.min[axis], b.min[axis]), std::min(a.max[axis], b.max[axis])});
+  }
+  return box;
 }
 
 std::size_t maxSeparationAxis(const Aabb& a, const Aabb& b) {

@@ -58,6 +58,13 @@ inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Type::overlap, "
                                        {AxisRelation::Type::touch, "touch"},
                                        {AxisRelation::Type::gap, "gap"}}};
 AxisRelation axisRelation(std::size_t axis, const Aabb& a, const Aabb& b);
+/// The colour of a relation.
+inline Rgb relationColour(const Palette& theme, AxisRelation::Type type) {
+  constexpr Rgb Palette::*kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
+  return theme.*kColours[static_cast<std::size_t>(type)];
+}
+/// Returns on each axis the overlap of the intervals or the gap between them.
+Aabb relationBox(const Aabb& a, const Aabb& b);
 /// Returns the axis with the widest gap or, if the boxes overlap, with the smallest overlap.
 std::size_t maxSeparationAxis(const Aabb& a, const Aabb& b);
 

@@ -20,7 +20,7 @@ constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
 constexpr float kZoomPerTurn = 0.86F;
 constexpr float kFlySpeed = 1.2F;   // distances to the target per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
-constexpr float kSurroundings = 3;  // size of the framed area, in sizes of the focused bodies
+constexpr float kSurroundings = 2;  // size of the framed area, in sizes of the focused bodies
 
 /// Adds the groups of the bodies, unless Alt is down.
 BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
@@ -46,9 +46,7 @@ void View::viewFrom(Direction direction) { flyTo(viewedFrom(camera_, direction))
 void View::showWholeScene() {
   if (!content_.snapshot()) return;
   const Aabb all = shownBox(content_.snapshot()->scene.world, *content_.snapshot()->boxes);
-  OrbitCamera whole = focusedOn(camera_, space_.toView(all), aspect());
-  whole.cut = OrbitCamera::kUncut;
-  flyTo(whole);
+  flyTo(focusedOn(camera_, space_.toView(all), aspect()));
 }
 
 void View::flyTo(const OrbitCamera& to) { flight_ = Flight{.from = camera_, .to = to}; }
@@ -72,9 +70,7 @@ void View::startRequestedFlight(Session& session) {
   const Aabb bounds = content_.boundsOf(bodies);
   if (isEmpty(bounds)) return;  // all bodies are absent
   const float margin = (kSurroundings - 1) * static_cast<float>(longestEdge(bounds)) / 2;
-  const Aabb surroundings = space_.toView(enlarged(bounds, margin));
-  // Cuts away the bodies that would hide them.
-  flyTo(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
+  flyTo(focusedOn(camera_, space_.toView(enlarged(bounds, margin)), aspect()));
 }
 
 void View::placeCamera(const Snapshot& snapshot) {
@@ -104,7 +100,9 @@ void View::drawEmpty(Ui& ui, const std::string& hint) {
       colour(ui.theme.faint), text.c_str());
 }
 
-void View::drawScene(const Ui& ui) {
+void View::drawScene(const Ui& ui, const Session& session) {
+  const Viewpoint viewpoint{.camera = toCamera(camera_, aspect(), {})};
+  content_.updateGlass(ViewProjection(space_, viewpoint).eye(), session.selection.focus());
   SceneViewContent picture = content_.picture;
   picture.space = space_;
   picture.scale = ui.scale;
@@ -134,7 +132,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Inp
   }
   const OrbitCamera before = camera_;
   advanceFlight(io.DeltaTime);
-  drawScene(ui);
+  drawScene(ui, session);
   ImGui::SetCursorScreenPos(corner_);
   ImGui::InvisibleButton("scene", size_,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
@@ -157,7 +155,12 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Inp
   const std::string source = sourceText(input.snapshot->source.get());
   answer_.where = session.second ? fmt::format("frame {}, {}", input.snapshot->frame, source) : "";
   answer_.waiting = input.waiting;
+  if (content_.deciding_axis)
+    drawDecidingAxis(ui, *content_.deciding_axis, mouse_input.projection, corner_, size_);
   const ImVec2 answer_end = drawAnswer(ui, answer_, corner_, size_);
+  if (input.editable && session.mismatches.examined()) {
+    drawReplay(ui, session, {corner_.x, answer_end.y});
+  }
   const bool tools = input.editable && session.document.shown();
   const float free_height = tools ? drawTools(ui, session, corner_, size_) : size_.y;
   drawLegend(ui, content_, answer_.owner, corner_, {size_.x, free_height}, answer_end);
@@ -240,8 +243,12 @@ void View::handleKeys() {
 }
 
 void View::click(Session& session, bool fly_there) {
-  const auto picked = pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), mouse_.x,
-                               mouse_.y, content_.picture.visible);
+  const auto pick = [&](BodyMask mask) {
+    return pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), mouse_.x, mouse_.y,
+                    mask);
+  };
+  auto picked = pick(content_.solid());
+  if (!picked) picked = pick(content_.picture.visible);
   if (!picked) {
     if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
     return;
@@ -252,7 +259,7 @@ void View::click(Session& session, bool fly_there) {
   } else {
     session.selection.select(bodies);
   }
-  if (fly_there) session.selection.fly_to = std::vector<std::uint32_t>{picked->body};
+  if (fly_there) session.selection.flyTo({picked->body});
 }
 
 void View::selectWithin(Session& session) {

@@ -67,7 +67,7 @@ class View {
   };
 
   void drawEmpty(Ui& ui, const std::string& hint);
-  void drawScene(const Ui& ui);
+  void drawScene(const Ui& ui, const Session& session);
   /// Resets the camera for a new scene.
   void placeCamera(const Snapshot& snapshot);
   void startRequestedFlight(Session& session);

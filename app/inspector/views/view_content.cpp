@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "inspector/views/glass.h"
+
 namespace broadmark {
 namespace {
 
@@ -24,7 +26,8 @@ bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
   // New bodies are selected before the first snapshot that contains them.
   std::vector<std::uint32_t> selection = session.selection.bodies();
   std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
-  Input input{snapshot, comparison, std::move(selection), session.display, dark};
+  const bool is_pair = selection.size() == 2 && !session.document.atRest();
+  Input input{snapshot, comparison, std::move(selection), is_pair, session.display, dark};
   if (input == input_) return false;
   input_ = std::move(input);
   picture.world = snapshot->scene.world;
@@ -69,8 +72,13 @@ void ViewContent::updateBodies() {
   }
   mode.colour(colouring_input, colouring);
   picture.boxes = *snapshot.boxes;
-  picture.colours = colouring.colours;
   picture.selected = input_.selection;
+  if (input_.is_pair) {
+    colouring.colours[input_.selection[0]] = picture.theme.first;
+    colouring.colours[input_.selection[1]] = picture.theme.second;
+    picture.selected = {};
+  }
+  picture.colours = colouring.colours;
   picture.bodies_revision = revision_;
 }
 
@@ -108,6 +116,63 @@ void ViewContent::addXray() {
   }
 }
 
+void ViewContent::addPair() {
+  const std::vector<Aabb>& boxes = *input_.snapshot->boxes;
+  const auto [a, b] = nearestImages(boxes[input_.selection[0]], boxes[input_.selection[1]],
+                                    input_.snapshot->scene.periodic);
+  const Palette& theme = picture.theme;
+  for (const auto& [box, colour] : {std::pair{a, theme.first}, {b, theme.second}}) {
+    if (isEmpty(box)) return;
+    wire_boxes_.push_back(
+        {.box = box, .colour = colour, .width = 2.5F, .behind = OcclusionStyle::shown});
+  }
+  const std::size_t axis = maxSeparationAxis(a, b);
+  const AxisRelation relation = axisRelation(axis, a, b);
+  const Rgb colour = relationColour(theme, relation.type);
+  const Aabb between = relationBox(a, b);
+  SceneLine line{.behind = OcclusionStyle::shown};
+  for (std::size_t i = 0; i < 3; ++i) {
+    line.from[i] = line.to[i] = static_cast<float>(centreOf(between, i));
+  }
+  deciding_axis = {.axis = axis, .relation = relation, .middle = line.from};
+  const auto add_line = [&](const Aabb& box, Rgb line_colour, float width) {
+    line.from[axis] = box.min[axis];
+    line.to[axis] = box.max[axis];
+    line.colour = line_colour;
+    line.width = width;
+    lines_.push_back(line);
+  };
+  Aabb beyond = merged(a, b);
+  const float excess = (beyond.max[axis] - beyond.min[axis]) / 4;
+  beyond.min[axis] -= excess;
+  beyond.max[axis] += excess;
+  add_line(beyond, theme.axis[axis], 2);
+  add_line(between, colour, 5);
+  wire_boxes_.push_back(
+      {.box = between, .colour = colour, .width = 1.5F, .behind = OcclusionStyle::shown});
+}
+
+void ViewContent::updateGlass(const Point& eye, std::span<const std::uint32_t> focus) {
+  const std::vector<Aabb>& boxes = *input_.snapshot->boxes;
+  std::vector<std::uint32_t> existing(focus.begin(), focus.end());
+  std::erase_if(existing, [&](std::uint32_t body) { return body >= boxes.size(); });
+  std::vector<std::uint8_t> glass = glassBefore(boxes, existing, eye);
+  if (glass == glass_) return;
+  glass_ = std::move(glass);
+  picture.glass = glass_;
+  picture.bodies_revision = ++revision_;
+}
+
+std::vector<std::uint8_t> ViewContent::solid() const {
+  std::vector<std::uint8_t> solid = visible_;
+  if (glass_.empty()) return solid;
+  solid.resize(glass_.size(), 1);
+  for (std::size_t body = 0; body < solid.size(); ++body) {
+    if (glass_[body] != 0) solid[body] = 0;
+  }
+  return solid;
+}
+
 void ViewContent::add(Overlay overlay) {
   lines_.insert(lines_.end(), overlay.lines.begin(), overlay.lines.end());
   wire_boxes_.insert(wire_boxes_.end(), overlay.boxes.begin(), overlay.boxes.end());
@@ -142,6 +207,7 @@ void ViewContent::updateLines() {
   wire_boxes_.clear();
   left_out = 0;
   cell_legend.clear();
+  deciding_axis.reset();
   const std::optional<std::span<const std::uint32_t>> selected =
       options.all_pair_lines ? std::nullopt
                              : std::optional<std::span<const std::uint32_t>>(input_.selection);
@@ -165,6 +231,7 @@ void ViewContent::updateLines() {
   }
   addTrails(snapshot.trails);
   if (options.xray) addXray();
+  if (input_.is_pair) addPair();
   if (const std::optional<Aabb> plane = clipPlane(options.filter, snapshot.scene.world)) {
     wire_boxes_.push_back({.box = *plane,
                            .colour = picture.theme.world,

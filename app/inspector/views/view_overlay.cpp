@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -88,6 +90,52 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
     y += line.font->FontSize;
   }
   return end;
+}
+
+void drawDecidingAxis(const Ui& ui, const ViewContent::DecidingAxis& deciding,
+                      const ViewProjection& projection, ImVec2 corner, ImVec2 size) {
+  const auto& [x, y, z] = deciding.middle;
+  const std::optional<Pixel> middle = projection.pixelOf({x, y, z});
+  if (!middle || middle->x() < 0 || middle->x() > size.x || middle->y() < 0 ||
+      middle->y() > size.y) {
+    return;
+  }
+  const std::string text =
+      fmt::format("{}: {} {}", kAxes[deciding.axis], kRelations.nameOf(deciding.relation.type),
+                  std::abs(static_cast<float>(deciding.relation.gap)));
+  const ImVec2 extent = ui.large->CalcTextSizeA(ui.large->FontSize, FLT_MAX, 0, text.c_str());
+  const float pad = 6 * ui.scale;
+  // Beside the boxes, away from the texts at the top.
+  const float offset = std::min(size.x, size.y) / 4;
+  const ImVec2 from{corner.x + middle->x(), corner.y + middle->y()};
+  const float right = corner.x + size.x - extent.x - pad;
+  const float bottom = corner.y + size.y - extent.y - pad;
+  const ImVec2 at{std::max(std::min(from.x + offset, right), corner.x + pad),
+                  std::max(std::min(from.y + offset, bottom), corner.y + pad)};
+  const Rgb rgb = relationColour(ui.theme, deciding.relation.type);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddLine(from, at, colour(rgb), 1.5F * ui.scale);
+  draw.AddRectFilled({at.x - pad, at.y}, {at.x + extent.x + pad, at.y + extent.y},
+                     colour(ui.theme.background, kBackdrop), 4 * ui.scale);
+  draw.AddText(ui.large, ui.large->FontSize, at, colour(rgb), text.c_str());
+}
+
+void drawReplay(Ui& ui, Session& session, ImVec2 at) {
+  Mismatches& mismatches = session.mismatches;
+  const std::uint32_t last = mismatches.examined()->frame;
+  bool on = session.playback.replaying();
+  const std::string label =
+      on ? "Stop###Replay"
+         : fmt::format("Replay frames {} to {}###Replay", mismatches.firstReplayed(), last);
+  const float pad = 6 * ui.scale;
+  ImGui::SetCursorScreenPos({at.x + pad, at.y + pad});
+  ImGui::BeginChild(
+      "Replay", {210 * ui.scale, ImGui::GetFrameHeight()}, false,
+      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NavFlattened);
+  if (ui.toggle(label.c_str(), on, "Show how the pair came to be wrong, slowly")) {
+    mismatches.toggleReplay();
+  }
+  ImGui::EndChild();
 }
 
 void drawLegend(const Ui& ui, const ViewContent& content, const std::string& owner, ImVec2 corner,

@@ -2,6 +2,7 @@
 // colours are distinguishable for colour-blind people, on light and dark backgrounds.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -59,5 +60,7 @@ struct ColourMode {
 
 /// All modes; the first is the default.
 std::span<const ColourMode> colourModes();
+/// The index of the mode that shows missed and false pairs.
+std::size_t correctnessMode();
 
 }  // namespace broadmark

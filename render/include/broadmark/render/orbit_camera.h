@@ -17,11 +17,9 @@ struct OrbitCamera {
   float pitch = 0;              ///< positive is downwards; within ±kSteepest
   float distance = 2;           ///< from the pivot to the eye, kNearest…kFarthest
   float field_of_view = 0.70F;  ///< vertical
-  float cut = kUncut;           ///< near plane as a fraction of the distance; below 1
 
   /// Slightly less than straight down, where the yaw is undefined.
   static constexpr float kSteepest = 1.562F;
-  static constexpr float kUncut = 0.02F;
   static constexpr float kNearest = 1e-5F;
   static constexpr float kFarthest = 1e4F;
 
@@ -56,9 +54,6 @@ OrbitCamera flown(OrbitCamera camera, float forward, float right, float up);
 /// Focuses the centre of a box (in view space) in the same direction, at a distance that shows the
 /// whole box, or a neighbourhood of a very small box.
 OrbitCamera focusedOn(OrbitCamera camera, const Aabb& box, double aspect);
-
-/// Clips everything nearer to the eye than a box (in view space).
-OrbitCamera cutAway(OrbitCamera camera, const Aabb& box);
 
 /// Interpolates between two views, with t from 0 to 1, slowly at both ends. The new pivot moves on
 /// a straight line on the screen.

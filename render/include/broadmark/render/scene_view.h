@@ -47,10 +47,11 @@ struct SceneViewContent {
   ViewSpace space;
   Aabb world;
 
-  std::uint64_t bodies_revision = 0;        ///< of the next four members
+  std::uint64_t bodies_revision = 0;        ///< of the next five members
   std::span<const Aabb> boxes;              ///< in the world; empty boxes are not drawn
   std::span<const Rgb> colours;             ///< by box
   BodyMask visible;                         ///< by box; empty: all are visible
+  BodyMask glass;                           ///< by box, transparent ones; empty: none is
   std::span<const std::uint32_t> selected;  ///< outlined bodies, including invisible ones
 
   std::uint64_t lines_revision = 0;  ///< of the next two members
