@@ -282,8 +282,7 @@ void blendBoxes(const SplatView& view, const SplatBox* boxes, const PixelRectang
         if (!any(hit)) continue;
         std::uint32_t* colours = band.colours + row + x;
         const auto under = load<Ints>(colours);
-        const Ints over = shaded(
-            view, [&](int) -> const SplatBox& { return box; }, rays, enter);
+        const Ints over = shaded(view, [&](int) -> const SplatBox& { return box; }, rays, enter);
         store(colours, hit ? blended(under, over, broadcast(opacity)) : under);
       }
     }

@@ -60,7 +60,7 @@ inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Type::overlap, "
 AxisRelation axisRelation(std::size_t axis, const Aabb& a, const Aabb& b);
 /// The colour of a relation.
 inline Rgb relationColour(const Palette& theme, AxisRelation::Type type) {
-  constexpr Rgb Palette::*kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
+  constexpr Rgb Palette::* kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
   return theme.*kColours[static_cast<std::size_t>(type)];
 }
 /// Returns on each axis the overlap of the intervals or the gap between them.
