@@ -6,6 +6,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <utility>
 
 namespace broadmark {
@@ -39,7 +41,18 @@ constexpr CursorShape kCursors[] = {
 
 }  // namespace
 
+/// Without them Wayland's client library prints a line of its own.
+static bool hasDisplay() {
+  return std::ranges::any_of(std::array{"DISPLAY", "WAYLAND_DISPLAY"}, [](const char* name) {
+    const char* const value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  });
+}
+
 Window::Window(const std::string& title, int width, int height) {
+  if (!hasDisplay()) {
+    throw RenderError("cannot open a window: neither DISPLAY nor WAYLAND_DISPLAY is set");
+  }
   if (glfwInit() != GLFW_TRUE) {
     throw RenderError(fmt::format("cannot open a window: {}", lastError()));
   }
