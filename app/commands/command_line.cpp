@@ -270,10 +270,13 @@ void requireShowable(const Plan& plan) {
 /// Makes the plan, then lists it, runs it, exports its case or opens it in the inspector. Returns
 /// the exit status. Throws InputError.
 int runSession(const SessionOptions& options) {
-  // In the inspector, the user can end a simulation.
-  addEnginesOf(options.plugins,
-               options.inspector() ? kNoEngineLimit : options.hosts.hard_limit_seconds);
-  Plan plan = makePlan(options, options.inspector() ? PlanUse::open : PlanUse::run);
+  // In the inspector, the user can end a simulation, and build a plug-in again.
+  const bool inspects = options.inspector();
+  const auto loading = inspects ? PluginLoading::copy : PluginLoading::in_place;
+  addEnginesOf(options.plugins, inspects ? kNoEngineLimit : options.hosts.hard_limit_seconds,
+               loading);
+  Plan plan = makePlan(options, inspects ? PlanUse::open : PlanUse::run,
+                       availableAlgorithms(options.plugins, loading));
   if (!options.written_request.empty()) {
     writeOutput(options.written_request, formatRunRequest(options));
     return exit_status::success;

@@ -117,6 +117,7 @@ class Inspector {
   void toggleTool(Tool tool);
   void editAuthored(const std::function<void(scenes::SceneEditor&)>& change);
   void askOpen();
+  void askLoadAlgorithms();
   void askSaveRecording();
   void askExportTimings(const std::string& table);
   void askMovie();

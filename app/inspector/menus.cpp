@@ -28,6 +28,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
       }
       ImGui::EndMenu();
     }
+    if (ui_.menuItem("Load algorithms…")) askLoadAlgorithms();
     ImGui::Separator();
     if (ui_.menuItem("Save scene…", session_.document.shown() ? save.c_str() : nullptr)) {
       askSaveScene(files_, session_);
@@ -112,6 +113,11 @@ void Inspector::askOpen() {
               .extensions = std::move(extensions),
               .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
               .chosen = [this](const fs::path& path) { session_.open(path); }});
+}
+
+void Inspector::askLoadAlgorithms() {
+  files_.ask({.title = "Load algorithms: a plug-in (.so), a program or a log of pairs",
+              .chosen = [this](const fs::path& path) { session_.plugins.load(path); }});
 }
 
 void Inspector::askSaveRecording() {

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
@@ -17,6 +18,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "broadmark/harness/shared_memory.h"
 #include "broadmark/hasher.h"
 #include "broadmark/plugin.h"
 #include "broadmark/scenes/engine_plugin.h"
@@ -26,6 +28,7 @@
 #include "request/external_program.h"
 #include "request/logged_pairs.h"
 #include "request/plugin_guard.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
@@ -66,13 +69,24 @@ std::string pluginFile(const std::string& name_or_path) {
   return fileOf(name_or_path).string();
 }
 
+/// Loads a copy of a library; null if that is impossible, as when it needs others beside it.
+void* loadCopy(const std::string& file) {
+  static std::vector<SharedMemory> copies;  // kept open, so that each has a name of its own
+  const SharedMemory& copy = copies.emplace_back();
+  const std::string bytes = readTextFile(file);
+  copy.write(std::span(bytes.data(), bytes.size()));
+  return ::dlopen(fmt::format("/proc/self/fd/{}", copy.descriptor()).c_str(),
+                  RTLD_NOW | RTLD_LOCAL);
+}
+
 /// Loads a plug-in, which stays loaded.
-void* load(const std::string& name_or_path) {
+void* load(const std::string& name_or_path, PluginLoading loading) {
   const std::string file = pluginFile(name_or_path);
   openForReading(file);  // throws unless it is a regular file
   // A path with a slash is not searched for in the loader's directories.
   const std::string path = fs::absolute(file).string();
-  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* library = loading == PluginLoading::copy ? loadCopy(file) : nullptr;
+  if (library == nullptr) library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, loaderError(path)));
   }
@@ -212,13 +226,13 @@ const OtherSource* otherSource(const std::string& plugin) {
 
 /// The algorithm of a pair log or a program, or those that a library exports through either
 /// interface; it may have engines instead.
-std::vector<Algorithm> algorithmsIn(const std::string& file) {
+std::vector<Algorithm> algorithmsIn(const std::string& file, PluginLoading loading) {
   if (const OtherSource* source = otherSource(file)) {
     Algorithm algorithm = source->open(file.substr(source->prefix.size()));
     algorithm.plugin = file;
     return {std::move(algorithm)};
   }
-  void* const library = load(file);
+  void* const library = load(file, loading);
   std::vector<Algorithm> algorithms;
   PluginBuild build;
   if (const auto* plugin = exportOf<Algorithm>(library, file, kAlgorithmPluginSymbol)) {
@@ -250,28 +264,57 @@ std::vector<SdkPlugin> sdkPlugins() {
 
 bool isLibrary(const std::string& plugin) { return otherSource(plugin) == nullptr; }
 
-std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
-  std::vector<Algorithm> algorithms = builtinAlgorithms();
-  for (const std::string& file : plugins) {
-    constexpr std::string_view kKind = "algorithm";
-    for (Algorithm& algorithm : algorithmsIn(file)) {
-      const Algorithm* other = findAlgorithm(algorithm.id, algorithms);
-      const auto instance = instanceOf(file, kKind, algorithm.id, algorithm.create);
-      requireValid(file, kKind, algorithm.id, instance != nullptr,
-                   other == nullptr ? nullptr : &other->plugin);
-      requireValidParameters(file, kKind, algorithm.id, *instance);
-      algorithms.push_back(std::move(algorithm));
-    }
+std::string pluginOf(const std::filesystem::path& file) {
+  const std::string path = fs::absolute(file).string();
+  if (file.extension() == ".so") return path;
+  return ::access(path.c_str(), X_OK) == 0 ? kExternalPrefix + shellQuoted(path)
+                                           : kPairLogPrefix + path;
+}
+
+std::vector<fs::path> pluginFiles(const std::string& plugin) {
+  const OtherSource* const source = otherSource(plugin);
+  if (source == nullptr) return {pluginFile(plugin)};
+  std::string argument = plugin.substr(source->prefix.size());
+  std::erase(argument, '\'');
+  std::vector<fs::path> files = {argument};
+  if (source->prefix == kExternalPrefix)
+    std::ranges::copy(splitAt(' ', argument), std::back_inserter(files));
+  std::erase_if(files, [](const fs::path& file) { return !fs::is_regular_file(file); });
+  return files;
+}
+
+std::vector<Algorithm> algorithmsOf(const std::string& plugin, const std::vector<Algorithm>& known,
+                                    PluginLoading loading) {
+  constexpr std::string_view kKind = "algorithm";
+  std::vector<Algorithm> algorithms;
+  for (Algorithm& algorithm : algorithmsIn(plugin, loading)) {
+    const Algorithm* other = findAlgorithm(algorithm.id, known);
+    if (other == nullptr) other = findAlgorithm(algorithm.id, algorithms);
+    const auto instance = instanceOf(plugin, kKind, algorithm.id, algorithm.create);
+    requireValid(plugin, kKind, algorithm.id, instance != nullptr,
+                 other == nullptr ? nullptr : &other->plugin);
+    requireValidParameters(plugin, kKind, algorithm.id, *instance);
+    algorithms.push_back(std::move(algorithm));
   }
   return algorithms;
 }
 
-void addEnginesOf(const std::vector<std::string>& plugins, std::optional<double> limit_seconds) {
+std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins,
+                                           PluginLoading loading) {
+  std::vector<Algorithm> algorithms = builtinAlgorithms();
+  for (const std::string& file : plugins) {
+    std::ranges::move(algorithmsOf(file, algorithms, loading), std::back_inserter(algorithms));
+  }
+  return algorithms;
+}
+
+void addEnginesOf(const std::vector<std::string>& plugins, std::optional<double> limit_seconds,
+                  PluginLoading loading) {
   if (!plugins.empty() && limit_seconds) guardEngines(*limit_seconds);
   for (const std::string& file : plugins) {
     if (!isLibrary(file)) continue;
     const auto* plugin =
-        exportOf<scenes::EngineEntry>(load(file), file, scenes::kEnginePluginSymbol);
+        exportOf<scenes::EngineEntry>(load(file, loading), file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;
     for (scenes::EngineEntry& engine : entriesOf(*plugin, file, "engine")) {
       requireValid(engine, file);

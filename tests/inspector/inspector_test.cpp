@@ -276,6 +276,53 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
 }
 
+TEST_F(InspectorTest, ALogOfPairsIsLoadedFromTheMenuAndAgainOnceItHasChanged) {
+  const std::filesystem::path recording = vanishingBodies(directory, 40);
+  std::string log = "frame,a,b\n";
+  const auto frames = openRecordingFile(recording);
+  for (std::uint32_t frame = 1; frame <= frames->scene().frames; ++frame) {
+    for (const Pair pair : bruteForcePairs(frames->at(frame).boxes)) {
+      log += fmt::format("{},{},{}\n", frame, pair.a, pair.b);
+    }
+  }
+  writeTextFile("pairs.csv", "frame,a,b\n");
+  inspector.session().open(recording);
+  waitUntilIdle();
+  click("File");
+  draw(3);
+  click("File/Load algorithms…");
+  draw(3);
+  click("File/name");
+  draw(2);
+  for (const char letter : std::string("pairs.csv")) {
+    input.push({.kind = InputEvent::Kind::character, .code = letter});
+  }
+  key(GLFW_KEY_ENTER);
+  waitUntilIdle();
+  EXPECT_EQ(value("algorithms"), "1");
+  EXPECT_EQ(value("panel.left"), "Algorithms");
+  key(GLFW_KEY_END);
+  waitUntilIdle();
+  draw(3);
+  EXPECT_THAT(value("status"), testing::HasSubstr("logged is wrong in frame 1"));
+  EXPECT_EQ(value("frame"), "1");
+
+  writeTextFile("pairs.csv", log);
+  waitUntilIdle();
+  draw(3);
+  EXPECT_EQ(value("status"), "logged: fixed: 0 of 20 frames wrong, 1 of 1 frame before");
+  EXPECT_EQ(value("frame"), "20");
+  EXPECT_EQ(value("algorithm.logged.status"), "ok");
+  EXPECT_EQ(value("error"), "");
+
+  std::filesystem::remove("pairs.csv");
+  draw(3);
+  EXPECT_EQ(value("algorithm.logged.status"), "ok");
+  writeTextFile("pairs.csv", "no log\n");
+  draw(3);
+  EXPECT_THAT(value("status"), testing::HasSubstr("pairs.csv"));
+}
+
 TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
   inspector.session().draft.simulate();
   inspector.session().tracks.add("sap");

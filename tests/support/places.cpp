@@ -13,6 +13,7 @@ std::string invalidPlugin() { return INVALID_PLUGIN; }
 std::string enginePlugin() { return ENGINE_PLUGIN; }
 std::string quickPlugin() { return QUICK_PLUGIN; }
 std::string slowPlugin() { return SLOW_PLUGIN; }
+std::string idlePlugin() { return IDLE_PLUGIN; }
 std::string foreignPlugin() { return FOREIGN_PLUGIN; }
 std::string faultInjection() { return FAULT_INJECTION; }
 

@@ -20,10 +20,11 @@ std::string enginePlugin();
 std::string unrulyEngine();
 /// A plug-in with an algorithm that is refused for the fault named by INVALID_PLUGIN.
 std::string invalidPlugin();
-/// Two builds of a plug-in with the algorithm `repeated-search`; the second one is many times
-/// slower.
+/// Builds of a plug-in with the algorithm `repeated-search`: the second one is many times slower,
+/// the third one finds nothing.
 std::string quickPlugin();
 std::string slowPlugin();
+std::string idlePlugin();
 /// A plug-in built for another version.
 std::string foreignPlugin();
 /// A library that makes system calls under the program fail; "" in builds with sanitizers.

@@ -37,9 +37,11 @@ struct TrackSpec {
   int number = 0;
   Case test_case;
 
+  int build = 0;  ///< number of times that the algorithm's plug-in has been loaded again
+
   /// Whether both tracks run the same case.
   friend bool operator==(const TrackSpec& a, const TrackSpec& b) {
-    return a.number == b.number && a.test_case.device == b.test_case.device &&
+    return a.number == b.number && a.build == b.build && a.test_case.device == b.test_case.device &&
            caseName(a.test_case) == caseName(b.test_case);
   }
 };

@@ -156,6 +156,7 @@ class Mismatches {
       return;
     }
     const auto [frame, number] = *progress.stop;
+    if (!isCurrent(findTrack(progress.tracks, number))) return;
     const bool is_acknowledged = acknowledged_ && *acknowledged_ >= frame;
     if (is_acknowledged || (handled_stop_ && handled_stop_->frame == frame)) return;
     playback_.goTo(frame);
@@ -171,6 +172,7 @@ class Mismatches {
   void handleErrors(const RunProgress& progress) {
     if (progress.source != playback_.source()) return;
     for (const TrackReport& track : progress.tracks) {
+      if (!isCurrent(&track)) continue;
       if (!hasFailed(track)) {
         std::erase(failed_, track.spec);
         continue;
@@ -185,6 +187,12 @@ class Mismatches {
       notices_.setStatus(fmt::format("{}: {}", track.spec.test_case.algorithm.id, track.reason),
                          Severity::error);
     }
+  }
+
+  /// Whether a report is that of a track as it is now, not of its former parameters or build.
+  [[nodiscard]] bool isCurrent(const TrackReport* report) const {
+    const TrackEdit* const track = report != nullptr ? tracks_.find(report->spec.number) : nullptr;
+    return track != nullptr && *track == report->spec;
   }
 
   void flyToStop(const Snapshot& snapshot) {

@@ -39,12 +39,14 @@ void Session::advance(const RunProgress& progress, double seconds) {
   reportFinishedJobs();
   available_frames_ = progress.available_frames;
   open_frames_ = progress.source == playback.source() ? progress.frames : nullptr;
+  plugins.reloadRebuilt(progress);
   waited_seconds_ = playback.hasReached(progress) ? 0 : waited_seconds_ + seconds;
   if (!playback.update(progress)) return;
   timeline.update(playback.source(), playback.lastFrame(), playback.frame());
   reportFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
+  plugins.compare(progress);
   playback.advance(progress, seconds);
 }
 

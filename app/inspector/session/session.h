@@ -17,6 +17,7 @@
 #include "inspector/session/notices.h"
 #include "inspector/session/opened_results.h"
 #include "inspector/session/playback.h"
+#include "inspector/session/plugin_list.h"
 #include "inspector/session/timeline.h"
 #include "inspector/session/track_list.h"
 #include "run/plan.h"
@@ -87,6 +88,7 @@ class Session {
   BodySelection selection{playback, document};
   DisplayOptions display;
   Mismatches mismatches{playback, tracks, selection, display, notices};
+  PluginList plugins{tracks, playback, notices};
   Draft draft{playback};
   std::optional<SecondViewRequest> second;  ///< nothing: no second view
   bool cameras_linked = true;               ///< one camera moves both views

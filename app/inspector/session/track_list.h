@@ -66,6 +66,33 @@ class TrackList {
     on_change();
   }
 
+  /// Replaces the algorithms of a plug-in, or adds them. Its tracks get the new ones, with the
+  /// parameters that these still have; a track without one is removed.
+  void replaceAlgorithms(const std::string& plugin, const std::vector<Algorithm>& algorithms) {
+    const auto is_its = [&](const Algorithm& algorithm) { return algorithm.plugin == plugin; };
+    std::erase_if(algorithms_, is_its);
+    algorithms_.insert(algorithms_.end(), algorithms.begin(), algorithms.end());
+    std::erase_if(list, [&](const TrackEdit& track) {
+      const Algorithm& algorithm = track.test_case.algorithm;
+      return is_its(algorithm) && findAlgorithm(algorithm.id, algorithms) == nullptr;
+    });
+    for (TrackEdit& track : list) {
+      Algorithm& algorithm = track.test_case.algorithm;
+      if (!is_its(algorithm)) continue;
+      algorithm = *findAlgorithm(algorithm.id, algorithms);
+      track.parameters = algorithm.create();
+      ++track.build;
+      for (const auto& value : track.test_case.parameters) {
+        try {
+          setParameters(*track.parameters, {value});
+        } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the default remains
+        }
+      }
+    }
+    if (find(shown_) == nullptr) shown_ = list.empty() ? 0 : list.front().number;
+    applyEdits();
+  }
+
   /// Returns the track with this number, or null.
   [[nodiscard]] TrackEdit* find(int number) {
     const auto found = std::ranges::find(list, number, &TrackEdit::number);
