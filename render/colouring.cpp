@@ -238,9 +238,9 @@ constexpr ColourMode kModes[] = {
 
 std::span<const ColourMode> colourModes() { return kModes; }
 
-std::size_t correctnessMode() {
-  return static_cast<std::size_t>(
-      std::ranges::find(kModes, &colourByCorrectness, &ColourMode::colour) - std::begin(kModes));
+std::size_t colourModeIndex(std::string_view id) {
+  return static_cast<std::size_t>(std::ranges::find(kModes, id, &ColourMode::id) -
+                                  std::begin(kModes));
 }
 
 }  // namespace broadmark

@@ -65,16 +65,27 @@ FrameValues::Range FrameValues::within(std::uint32_t first, std::uint32_t last) 
   return range;
 }
 
-std::optional<std::uint32_t> FrameValues::firstKnown(std::uint32_t first,
-                                                     std::uint32_t last) const {
+template <class Predicate>
+std::optional<std::uint32_t> FrameValues::firstWhere(std::uint32_t first, std::uint32_t last,
+                                                     const Predicate& contains) const {
   std::optional<std::uint32_t> found;
   visitBlocks(first, last, [&](unsigned level, std::uint32_t index) {
-    if (!block(level, index).known()) return false;
-    for (; level > 0; --level) index = 2 * index + (block(level - 1, 2 * index).known() ? 0 : 1);
+    if (!contains(block(level, index))) return false;
+    for (; level > 0; --level) index = 2 * index + (contains(block(level - 1, 2 * index)) ? 0 : 1);
     found = index;
     return true;
   });
   return found;
+}
+
+std::optional<std::uint32_t> FrameValues::highest(std::uint32_t first, std::uint32_t last) const {
+  const float high = within(first, last).high;
+  return firstWhere(first, last, [&](Range range) { return range.high == high; });
+}
+
+std::optional<std::uint32_t> FrameValues::firstKnown(std::uint32_t first,
+                                                     std::uint32_t last) const {
+  return firstWhere(first, last, [](Range range) { return range.known(); });
 }
 
 }  // namespace broadmark

@@ -103,6 +103,26 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
   });
 }
 
+/// Draws the stack of the highest frame of each block.
+void drawStack(ImDrawList& draw, const std::vector<PlotCurve>& curves, const FrameValues& total,
+               const Axes& axes) {
+  axes.eachBlock(total, [&](double from, double to, FrameValues::Range range) {
+    if (!range.known()) return;
+    const auto frame =
+        total.highest(static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to));
+    const float left = std::floor(axes.x(from - 0.5));
+    const float right = std::max(std::floor(axes.x(to + 0.5)), left + 1);
+    double sum = 0;
+    for (const PlotCurve& curve : curves) {
+      const double value = curve.values->at(*frame);
+      if (!(value > 0)) continue;
+      const float bottom = axes.y(sum);
+      sum += value;
+      draw.AddRectFilled({left, axes.y(sum)}, {right, bottom}, packed(curve.colour));
+    }
+  });
+}
+
 void drawArea(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
   const float max_value = curve.values->within(0, curve.values->size()).high;
   if (!(max_value > 0)) return;
@@ -141,6 +161,7 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, co
     if (frame != std::floor(frame)) continue;
     const float x = axes.x(frame);
     draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.grid);
+    if (!options.frame_numbers) continue;
     const std::string text = fmt::format("{:.0f}", frame);
     const float half = ImGui::CalcTextSize(text.c_str()).x / 2;
     if (x + half > flag.min.x && x - half < flag.max.x) continue;
@@ -218,6 +239,16 @@ std::optional<std::uint32_t> markedFrame(const Axes& axes, const PlotOptions& op
   return marked;
 }
 
+/// The frame that a click at the mouse selects: a marked one, the peak of a stack, or the nearest.
+std::uint32_t frameAtMouse(const Axes& axes, const PlotOptions& options, ImVec2 mouse) {
+  if (const auto marked = markedFrame(axes, options, mouse)) return *marked;
+  const std::uint32_t nearest = axes.nearestFrame(mouse.x);
+  if (options.stack_total == nullptr) return nearest;
+  return options.stack_total
+      ->highest(axes.nearestFrame(mouse.x - kMarkRadius), axes.nearestFrame(mouse.x + kMarkRadius))
+      .value_or(nearest);
+}
+
 void drawPlayhead(ImDrawList& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
                   const PlotColours& colours) {
   const float x = axes.x(options.playhead);
@@ -225,8 +256,19 @@ void drawPlayhead(ImDrawList& draw, const Axes& axes, const PlotOptions& options
   if (x >= axes.min.x && x <= axes.max.x) {
     draw.AddLine({x, marksTop(axes, options)}, {x, axes.max.y}, colours.playhead, line / 10);
   }
+  if (!options.frame_numbers) return;
   draw.AddRect(flag.min, flag.max, colours.playhead, 3);
   draw.AddText({flag.min.x + line / 4, flag.min.y + 1}, colours.playhead, flag.text.c_str());
+}
+
+void drawTitle(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+               const PlotColours& colours) {
+  if (options.title.empty()) return;
+  const ImVec2 extent = ImGui::CalcTextSize(options.title.c_str());
+  const ImVec2 at{axes.min.x + extent.y / 3, axes.min.y};
+  draw.AddRectFilled({at.x - 2, at.y}, {at.x + extent.x + 2, at.y + extent.y}, colours.background,
+                     2);
+  draw.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), options.title.c_str());
 }
 
 void drawSpan(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
@@ -269,7 +311,13 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
     ImGui::PopStyleColor();
     ImGui::SameLine();
     ImGui::TextUnformatted(withPrefix(value, options.unit).c_str());
-    draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
+    if (options.stack_total == nullptr) {
+      draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
+    }
+  }
+  if (known && options.stack_total != nullptr) {
+    const double total = options.stack_total->at(frame);
+    ImGui::Text("total %s", withPrefix(total, options.unit).c_str());
   }
   if (!known) ImGui::TextUnformatted("not run yet");
   writeValue(options.thin, frame);
@@ -283,6 +331,7 @@ std::vector<PlotEntry> entriesOf(const std::vector<PlotCurve>& curves, const Plo
   const auto add = [&](const PlotCurve& curve) {
     entries.push_back({.label = curve.label, .colour = curve.colour, .hidden = curve.hidden});
   };
+  if (options.stack_total != nullptr) return entries;
   std::ranges::for_each(curves, add);
   if (options.thin != nullptr) add(*options.thin);
   if (options.area != nullptr) add(*options.area);
@@ -307,8 +356,7 @@ void handleMouse(const Axes& axes, const PlotOptions& options, PlotResult& resul
     result.moved = axes.frameAt(0) - axes.frameAt(io.MouseDelta.x);
   }
   if (ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(0) && across && !is_drag) {
-    const auto marked = markedFrame(axes, options, pressed);
-    result.clicked_frame = marked ? *marked : frame_at_mouse;
+    result.clicked_frame = frameAtMouse(axes, options, pressed);
   }
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
     result.zoom = static_cast<double>(io.MouseWheel);
@@ -323,14 +371,22 @@ unsigned plotLevel(double frames_per_pixel) {
 }
 
 std::string withPrefix(double value, const char* unit) {
+  constexpr double kRounded = 0.9995;  // becomes 1 with three digits
+  const double size = std::abs(value);
   if (*unit == '\0') {
-    return value >= 1e4 ? fmt::format("{:.3g}k", value / 1e3) : fmt::format("{:.4g}", value);
+    constexpr std::pair<double, const char*> kPrefixes[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}};
+    if (size < kRounded * 1e4 && std::fmod(size, 100) != 0) return fmt::format("{:.4g}", value);
+    for (const auto& [factor, prefix] : kPrefixes) {
+      if (size >= kRounded * factor) return fmt::format("{:.3g}{}", value / factor, prefix);
+    }
+    return fmt::format("{:.3g}", value);
   }
   constexpr std::pair<double, const char*> kPrefixes[] = {
       {1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}};
   if (value == 0) return fmt::format("0 {}", unit);
+  if (size >= kRounded * 1e3) return fmt::format("{:.0f} {}", value, unit);
   for (const auto& [factor, prefix] : kPrefixes) {
-    if (std::abs(value) >= 0.9995 * factor) {
+    if (size >= kRounded * factor) {
       return fmt::format("{:.3g} {}{}", value / factor, prefix, unit);
     }
   }
@@ -353,7 +409,10 @@ std::vector<double> axisTicks(double low, double high, int count, bool logarithm
         if (tick >= low && tick <= high) ticks.push_back(tick);
       }
     }
-    return ticks;
+    // One label alone would not show the scale.
+    if (ticks.size() > 1 || count == 1) return ticks;
+    if (decades >= 1) return axisTicks(low, high, count + 1, true);
+    ticks.clear();
   }
   const double rough = (high - low) / count;
   const double power = std::pow(10, std::floor(std::log10(rough)));
@@ -364,7 +423,7 @@ std::vector<double> axisTicks(double low, double high, int count, bool logarithm
   for (double index = std::ceil(low / step); index * step <= high; ++index) {
     ticks.push_back(index * step);
   }
-  return ticks;
+  return ticks.size() < 2 && count > 1 ? axisTicks(low, high, count + 1, false) : ticks;
 }
 
 PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
@@ -380,7 +439,8 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   const float right_scale = options.thin != nullptr ? 3.2F * line : 1.4F * line;
   const float marks = kMarkRow * line * static_cast<float>(options.marks.size());
   Axes axes{.min = {corner.x + 4.8F * line, corner.y + std::max(line / 2, marks)},
-            .max = {corner.x + width - right_scale - legend, corner.y + height - 1.4F * line},
+            .max = {corner.x + width - right_scale - legend,
+                    corner.y + height - (options.frame_numbers ? 1.4F : 0.5F) * line},
             .first = options.first,
             .last = std::max(options.last, options.first + 1),
             .vertical = {.logarithmic = options.logarithmic}};
@@ -391,7 +451,12 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   for (const PlotCurve& curve : curves) {
     if (!curve.hidden) shown.push_back(&curve);
   }
-  fitScale(axes, shown);
+  if (options.stack_total != nullptr) {
+    const float high = axes.valuesOf(*options.stack_total).high;
+    axes.vertical.fit({0, std::fmax(high, static_cast<float>(options.least_top))});
+  } else {
+    fitScale(axes, shown);
+  }
 
   const PlotColours colours;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -402,7 +467,12 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   if (options.area != nullptr) drawArea(draw, *options.area, axes);
   if (options.span) drawSpan(draw, axes, options, colours);
   if (options.thin != nullptr) drawThin(draw, *options.thin, axes);
-  for (const PlotCurve* curve : shown) drawCurve(draw, *curve, axes, kPlotLineWidth * line / 15);
+  if (options.stack_total != nullptr) {
+    drawStack(draw, curves, *options.stack_total, axes);
+  } else {
+    for (const PlotCurve* curve : shown) drawCurve(draw, *curve, axes, kPlotLineWidth * line / 15);
+  }
+  drawTitle(draw, axes, options, colours);
   draw.PopClipRect();
   draw.AddRect(axes.min, axes.max, colours.frame, 3);
   drawMarks(draw, axes, options);
@@ -419,10 +489,8 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   if (result.hovered && ImGui::IsMouseClicked(0)) result.toggled = result.hovered;
   handleMouse(axes, options, result);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const auto marked = markedFrame(axes, options, mouse);
-  if (hovered && (axes.contains(mouse) || marked)) {
-    drawCrosshair(draw, curves, axes, options, marked ? *marked : axes.nearestFrame(mouse.x),
-                  colours);
+  if (hovered && (axes.contains(mouse) || markedFrame(axes, options, mouse))) {
+    drawCrosshair(draw, curves, axes, options, frameAtMouse(axes, options, mouse), colours);
   }
   return result;
 }

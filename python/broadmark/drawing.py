@@ -147,11 +147,18 @@ def style(algorithm: str) -> Style:
     return Style(LIGHT["curve"][curve], MARKERS[symbol], algorithm.endswith("-mt"), line)
 
 
+def plain_numbers() -> FuncFormatter:
+    """Ticks without a unit: 0.5, 20, 1k, 10M."""
+    engineering = EngFormatter(sep="")
+    return FuncFormatter(
+        lambda value, _: engineering(value) if abs(value) >= 1000 else f"{value:g}"
+    )
+
+
 def log_scale(axes: Any, name: str, unit: str = "") -> None:
     """Makes the axis x or y logarithmic; with a unit, ticks have SI prefixes (2 ms, 10 kB)."""
     {"x": axes.set_xscale, "y": axes.set_yscale}[name]("log")
     axis = {"x": axes.xaxis, "y": axes.yaxis}[name]
     axis.set_major_locator(LogLocator(subs=(1,) if unit == "B" else (1, 2, 5)))
-    formatter = EngFormatter(unit) if unit else FuncFormatter(lambda value, _: f"{value:g}")
-    axis.set_major_formatter(formatter)
+    axis.set_major_formatter(EngFormatter(unit) if unit else plain_numbers())
     axis.set_minor_formatter(NullFormatter())

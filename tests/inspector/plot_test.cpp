@@ -17,7 +17,13 @@ TEST(Plot, NumbersHaveSiPrefixes) {
   EXPECT_EQ(withPrefix(0, "s"), "0 s");
   EXPECT_EQ(withPrefix(3, "s"), "3 s");
   EXPECT_EQ(withPrefix(4e-10, "s"), "0.4 ns");
+  EXPECT_EQ(withPrefix(1999.6, "s"), "2000 s");
   EXPECT_EQ(withPrefix(1234, ""), "1234");
+  EXPECT_EQ(withPrefix(5000, ""), "5k");
+  EXPECT_EQ(withPrefix(9999.9, ""), "10k");
+  EXPECT_EQ(withPrefix(12'345, ""), "12.3k");
+  EXPECT_EQ(withPrefix(999'700, ""), "1M");
+  EXPECT_EQ(withPrefix(2.5e9, ""), "2.5G");
 }
 
 TEST(Plot, TicksAreRoundAndWithinTheAxis) {
@@ -44,6 +50,11 @@ TEST(Plot, TicksAreRoundAndWithinTheAxis) {
     }
   }
   EXPECT_TRUE(axisTicks(1, 1, 5, false).empty());
+}
+
+TEST(Plot, TicksShowTheScaleInLittleSpace) {
+  EXPECT_EQ(axisTicks(0, 4.2, 2, false), (std::vector<double>{0, 2, 4}));
+  EXPECT_EQ(axisTicks(130, 190, 3, true), (std::vector<double>{140, 160, 180}));
 }
 
 TEST(Plot, BlocksAreNoWiderThanAPixelAndNoNarrowerThanHalf) {
@@ -73,9 +84,11 @@ TEST(FrameValues, KnowsLowestHighestAndFirstOfAnyFrames) {
       const std::uint32_t last = first + below(frames);  // perhaps beyond the end
       FrameValues::Range range;
       std::optional<std::uint32_t> known;
+      std::optional<std::uint32_t> highest;
       for (std::uint32_t i = first; i <= last && i < frames; ++i) {
         range = {std::fmin(range.low, plain[i]), std::fmax(range.high, plain[i])};
         if (!known && !std::isnan(plain[i])) known = i;
+        if (plain[i] > (highest ? plain[*highest] : -1)) highest = i;
       }
       const FrameValues::Range found = values.within(first, last);
       ASSERT_EQ(found.known(), range.known());
@@ -84,6 +97,7 @@ TEST(FrameValues, KnowsLowestHighestAndFirstOfAnyFrames) {
         ASSERT_EQ(found.high, range.high);
       }
       ASSERT_EQ(values.firstKnown(first, last), known);
+      ASSERT_EQ(values.highest(first, last), highest);
     }
   }
 }

@@ -123,9 +123,12 @@ class CasesPanel final : public Panel {
     if (!ImGui::BeginTable("cases", columns, kFlags, {widthOfWholeColumns("cases", 3), 0})) return;
     ImGui::TableSetupScrollFreeze(2, 1);
     ImGui::TableSetupColumn("##mark", ImGuiTableColumnFlags_NoSort);
-    for (const CaseColumn* column : columns_)
-      ImGui::TableSetupColumn(column->shown.heading.c_str());
-    drawHeadings();
+    std::vector<std::string> names = {"##mark"};
+    for (const CaseColumn* column : columns_) {
+      names.push_back(column->shown.heading);
+      ImGui::TableSetupColumn(names.back().c_str());
+    }
+    ui.headings(names);
     sort(results);
     const auto curves = plots_.rowColours(ui.theme, results);
     clipped(results.listed().size(), [&](std::size_t row) {
@@ -133,16 +136,6 @@ class CasesPanel final : public Panel {
       drawRow(results, index, curves[index], row == 0);
     });
     ImGui::EndTable();
-  }
-
-  void drawHeadings() {
-    const auto scope = ui.scope("by");
-    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-    for (int i = 0; i < ImGui::TableGetColumnCount(); ++i) {
-      if (!ImGui::TableSetColumnIndex(i)) continue;
-      ImGui::TableHeader(ImGui::TableGetColumnName(i));
-      ui.note(ImGui::TableGetColumnName(i));
-    }
   }
 
   void sort(OpenedResults& results) const {

@@ -82,11 +82,20 @@ class DuelPanel final : public Panel {
 
   /// Draws the ranking or, until there is one, the algorithms in their own order.
   void drawTable(const DuelResult& result) {
-    if (!ui.beginTable("ranking", {"", "algorithm", "median", "min", "ratio", "95 % interval"},
+    if (!ui.beginTable("ranking", {"rank", "algorithm", "median", "min", "ratio", "95 % interval"},
                        2)) {
       return;
     }
-    for (std::size_t row = 0; row < result.sides.size(); ++row) {
+    const auto rows = Ui::sortedRows(
+        result.sides.size(), [&](std::size_t row, std::size_t column) -> Ui::SortKey {
+          const std::size_t side = result.ranking.empty() ? row : result.ranking[row].side;
+          const std::vector<double>& seconds = result.sides[side].seconds;
+          if (column == 1) return result.sides[side].name;
+          if (column == 2) return quantile(seconds, 0.5);
+          if (column == 3) return quantile(seconds, 0);
+          return static_cast<double>(row);
+        });
+    for (const std::size_t row : rows) {
       const DuelRank* rank = result.ranking.empty() ? nullptr : &result.ranking[row];
       drawSide(result, rank == nullptr ? row : rank->side, rank);
     }

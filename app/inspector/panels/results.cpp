@@ -6,21 +6,10 @@
 #include <vector>
 
 #include "inspector/panels/panel.h"
+#include "inspector/session/track_statistics.h"
 
 namespace broadmark::panels::results {
 namespace {
-
-/// Returns the mean total of the undisturbed frames, in nanoseconds; -1 if there are none.
-double meanTotal(const TrackReport& track) {
-  double sum = 0;
-  std::uint64_t count = 0;
-  for (const FrameRecord& record : track.frames) {
-    if (!record.run || record.disturbed) continue;
-    sum += static_cast<double>(record.times[Phase::total]);
-    ++count;
-  }
-  return count == 0 ? -1 : sum / static_cast<double>(count);
-}
 
 class ResultsPanel final : public Panel {
  public:
@@ -33,20 +22,34 @@ class ResultsPanel final : public Panel {
           "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
     }
-    if (!ui.beginTable("results", columnNames(), 2)) return;
+    const std::vector<std::string> columns = columnNames();
+    if (!ui.beginTable("results", columns, 2)) return;
     const std::vector<Rgb> colours = trackColours();
-    for (std::size_t i = 0; i < tracks.size(); ++i) drawTrack(tracks[i], colours[i]);
+    const auto rows = Ui::sortedRows(tracks.size(), [&](std::size_t row, std::size_t column) {
+      return sortKey(tracks[row], columns.at(column));
+    });
+    for (const std::size_t row : rows) drawTrack(tracks[row], colours[row]);
     ImGui::EndTable();
   }
 
  private:
   static std::vector<std::string> columnNames() {
     std::vector<std::string> names = {"algorithm", "status", "total",   "mean",         "pairs",
-                                      "missed",    "false",  "invalid", "allowed extra"};
+                                      "missed",    "false",  "invalid", "allowed_extra"};
     for (const auto& [phase, name] : kPhases.entries) {
       if (phase != Phase::total) names.emplace_back(name);
     }
     return names;
+  }
+
+  [[nodiscard]] Ui::SortKey sortKey(const TrackReport& track, const std::string& column) const {
+    if (column == "algorithm") return caseName(track.spec.test_case);
+    if (column == "status") return std::string(statusName(track.status));
+    if (column == "mean") return meanSeconds(track, Phase::total).value_or(-1);
+    const FrameRecord* const record = track.record(session.playback.frame());
+    if (record == nullptr) return -1.0;
+    if (const auto phase = kPhases.find(column)) return static_cast<double>(record->times[*phase]);
+    return static_cast<double>(record->counts[*kFrameCounts.find(column)]);
   }
 
   void drawTrack(const TrackReport& track, Rgb curve) {
@@ -70,8 +73,8 @@ class ResultsPanel final : public Panel {
     const bool disturbed = record != nullptr && record->disturbed;
     time(Phase::total, disturbed ? " *" : "");
     if (disturbed) ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
-    const double mean = meanTotal(track);
-    ui.cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
+    const std::optional<double> mean = meanSeconds(track, Phase::total);
+    ui.cell(mean ? withPrefix(*mean, "s") : "–");
     ui.cell(record == nullptr ? "–" : std::to_string(record->counts[FrameCount::pairs]));
     for (const FrameCount type : {FrameCount::missed, FrameCount::false_pairs, FrameCount::invalid,
                                   FrameCount::allowed_extra}) {

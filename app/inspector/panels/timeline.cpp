@@ -19,6 +19,7 @@ namespace {
 
 constexpr float kPlotShare = 0.56F;      // of the width; a span's statistics get the rest
 constexpr float kMinWidthForBoth = 600;  // units; a narrower panel shows one of both
+constexpr std::array kShares = {0.5, 0.05, 0.95, 0.99, 1.0};  // of the quantiles in the table
 
 class TimelinePanel final : public Panel {
  public:
@@ -121,6 +122,15 @@ class TimelinePanel final : public Panel {
     }
   }
 
+  /// The column's statistics, in the order of the headings.
+  [[nodiscard]] Ui::SortKey sortKey(std::size_t track, std::size_t column) const {
+    if (column == 0) return caseName(progress->tracks[track].spec.test_case);
+    const SpanStatistics& span = statistics_[track];
+    if (column > kShares.size() + 1) return static_cast<double>(span.values.size());
+    if (span.values.empty()) return -1.0;
+    return column > kShares.size() ? span.total : quantile(span.values, kShares[column - 1]);
+  }
+
   void drawStatistics() const {
     const std::vector<TrackReport>& tracks = progress->tracks;
     const std::vector<Rgb> colours = trackColours();
@@ -131,11 +141,13 @@ class TimelinePanel final : public Panel {
                        height)) {
       return;
     }
-    for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const auto rows = Ui::sortedRows(
+        tracks.size(), [&](std::size_t row, std::size_t column) { return sortKey(row, column); });
+    for (const std::size_t i : rows) {
       const SpanStatistics& span = statistics_[i];
       ImGui::TableNextRow();
       ui.cell(caseName(tracks[i].spec.test_case), colours[i]);
-      for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
+      for (const double share : kShares) {
         ui.cell(span.values.empty() ? "–" : valueText(quantile(span.values, share)));
       }
       ui.cell(span.values.empty() ? "–" : valueText(span.total));

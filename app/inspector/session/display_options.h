@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -107,6 +108,7 @@ struct DisplayOptions {
       filter.hidden_classes = 0;
     }
   }
+  void colourBy(std::string_view id) { colourBy(colourModeIndex(id)); }
   friend bool operator==(const DisplayOptions&, const DisplayOptions&) = default;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -92,7 +93,7 @@ class Mismatches {
       former_hidden_classes_ = display_.filter.hidden_classes;
     }
     examined_ = wrong;
-    display_.colourBy(correctnessMode());
+    display_.colourBy(kColours);
   }
   [[nodiscard]] const std::optional<Examined>& examined() const { return examined_; }
   // Precondition: a pair is examined.
@@ -140,12 +141,13 @@ class Mismatches {
  private:
   /// Number of frames before the examined one that are replayed.
   static constexpr std::uint32_t kReplayedFrames = 10;
+  static constexpr std::string_view kColours = "correctness";
 
   static BodySelection::Bodies bodiesOf(Pair pair) { return {pair.a, pair.b}; }
 
   /// Restores the colours, unless the user has chosen others.
   void endExamination() {
-    if (!std::exchange(examined_, {}) || display_.colouring != correctnessMode()) return;
+    if (!std::exchange(examined_, {}) || display_.colourMode().id != kColours) return;
     display_.colourBy(former_colouring_);
     display_.filter.hidden_classes = former_hidden_classes_;
   }

@@ -7,6 +7,19 @@
 #include "broadmark/statistics/statistics.h"
 
 namespace broadmark {
+namespace {
+
+/// Calls visit(frame, record) for the frames of a span that were run undisturbed.
+template <class Visit>
+void visitUndisturbed(const TrackReport& track, FrameSpan span, const Visit& visit) {
+  const auto last = std::min<std::size_t>(track.frames.size(), span.last);
+  for (std::size_t frame = span.first; frame <= last; ++frame) {
+    const FrameRecord& record = track.frames[frame - 1];
+    if (record.run && !record.disturbed) visit(static_cast<std::uint32_t>(frame), record);
+  }
+}
+
+}  // namespace
 
 SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& disturbed,
                             FrameSpan span) {
@@ -23,6 +36,28 @@ SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& distur
   std::ranges::sort(statistics.values);
   statistics.total = std::accumulate(statistics.values.begin(), statistics.values.end(), 0.0);
   return statistics;
+}
+
+std::optional<double> meanSeconds(const TrackReport& track, Phase phase, FrameSpan span) {
+  double sum_ns = 0;
+  std::uint64_t count = 0;
+  visitUndisturbed(track, span, [&](std::uint32_t, const FrameRecord& record) {
+    sum_ns += static_cast<double>(record.times[phase]);
+    ++count;
+  });
+  if (count == 0) return {};
+  return sum_ns * 1e-9 / static_cast<double>(count);
+}
+
+std::optional<std::uint32_t> slowestFrame(const TrackReport& track, FrameSpan span) {
+  std::optional<std::uint32_t> slowest;
+  std::int64_t longest = -1;
+  visitUndisturbed(track, span, [&](std::uint32_t frame, const FrameRecord& record) {
+    if (record.times[Phase::total] <= longest) return;
+    longest = record.times[Phase::total];
+    slowest = frame;
+  });
+  return slowest;
 }
 
 TimeRatios ratiosOf(const TrackReport& first, const TrackReport& second) {

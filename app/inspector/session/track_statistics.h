@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct SpanStatistics {
 /// Computes the statistics of a curve in a span. O(n log n) for n frames.
 SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& disturbed,
                             FrameSpan span);
+
+/// Mean time of a phase over the undisturbed frames of a span; nothing without such frames.
+std::optional<double> meanSeconds(const TrackReport& track, Phase phase,
+                                  FrameSpan span = {1, std::numeric_limits<std::uint32_t>::max()});
+
+/// The slowest of the undisturbed frames of a span.
+std::optional<std::uint32_t> slowestFrame(const TrackReport& track, FrameSpan span);
 
 /// Frame times of a first track relative to a second.
 struct TimeRatios {

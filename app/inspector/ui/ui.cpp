@@ -8,18 +8,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <type_traits>
 
 #include "broadmark/statistics/statistics.h"
+#include "inspector/ui/terms.h"
 
 namespace broadmark {
 namespace {
 
 /// Width of an input as a share of its panel; the label gets the rest.
 constexpr float kInputShare = 0.52F;
-constexpr float kVectorShare = 0.7F;    // of the width, for three numbers in a row
-constexpr float kTooltipDelay = 0.45F;  // seconds
-constexpr std::size_t kBins = 48;       // of a histogram
+constexpr float kVectorShare = 0.7F;      // of the width, for three numbers in a row
+constexpr float kTooltipDelay = 0.45F;    // seconds
+constexpr std::size_t kBins = 48;         // of a histogram
+constexpr std::size_t kShortHeading = 9;  // characters; a longer one gets two lines
 
 /// Returns the name in a label: "Add" in "Add##popup", "speed" in "##speed" or "Pause###speed".
 std::string_view nameOf(std::string_view label) {
@@ -446,15 +450,54 @@ bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, i
                     float height) {
   constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                      ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
-                                     ImGuiTableFlags_ScrollY;
+                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_Sortable |
+                                     ImGuiTableFlags_SortTristate;
   if (!ImGui::BeginTable(name, static_cast<int>(columns.size()), kFlags,
                          {widthOfWholeColumns(name, always), height})) {
     return false;
   }
   ImGui::TableSetupScrollFreeze(1, 1);
   for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
-  ImGui::TableHeadersRow();
+  headings(columns);
   return true;
+}
+
+void Ui::headings(const std::vector<std::string>& names) {
+  const auto inside = scope("by");
+  // In two lines, because the numbers below are shorter.
+  std::vector<std::string> labels = names;
+  float height = 0;
+  for (std::string& label : labels) {
+    const std::size_t gap = label.size() < kShortHeading ? label.npos : label.find_last_of(" _");
+    if (gap != label.npos) label[gap] = '\n';
+    height = std::max(height, ImGui::CalcTextSize(label.c_str()).y);
+  }
+  // The same height whichever columns are visible: the rows must not move when one is scrolled.
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers, height + 2 * ImGui::GetStyle().CellPadding.y);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
+    ImGui::TableHeader(fmt::format("{}###{}", labels[i], names[i]).c_str());
+    note(names[i]);
+    tooltip(termDoc(names[i]));
+  }
+}
+
+std::vector<std::size_t> Ui::sortedRows(
+    std::size_t count, const std::function<SortKey(std::size_t row, std::size_t column)>& key) {
+  std::vector<std::size_t> rows(count);
+  std::iota(rows.begin(), rows.end(), 0);
+  const ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();
+  if (specs == nullptr || specs->SpecsCount == 0) return rows;
+  const ImGuiTableColumnSortSpecs& by = specs->Specs[0];
+  const auto key_of = [&](std::size_t row) {
+    return key(row, static_cast<std::size_t>(by.ColumnIndex));
+  };
+  if (by.SortDirection == ImGuiSortDirection_Descending) {
+    std::ranges::stable_sort(rows, std::ranges::greater(), key_of);
+  } else {
+    std::ranges::stable_sort(rows, {}, key_of);
+  }
+  return rows;
 }
 
 void Ui::cell(std::string_view words) { cell(words, theme.text); }

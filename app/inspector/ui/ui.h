@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "broadmark/parameters.h"
@@ -118,9 +119,16 @@ class Ui {
   [[nodiscard]] static float widthBefore(std::string_view right);
   /// Draws right-aligned text on the line of the last item.
   void rightAligned(std::string_view text, Rgb rgb);
-  /// Begins a table with a header row. If it returns true, call ImGui::EndTable().
-  static bool beginTable(const char* name, const std::vector<std::string>& columns, int always,
-                         float height = 0);
+  /// Begins a table with headings that explain their terms and sort its rows, see sortedRows(). If
+  /// it returns true, call ImGui::EndTable().
+  bool beginTable(const char* name, const std::vector<std::string>& columns, int always,
+                  float height = 0);
+  /// Draws the row of headings with these names.
+  void headings(const std::vector<std::string>& names);
+  using SortKey = std::variant<double, std::string>;
+  /// Returns the rows of the begun table, sorted by the key of the chosen column, if any.
+  static std::vector<std::size_t> sortedRows(
+      std::size_t count, const std::function<SortKey(std::size_t row, std::size_t column)>& key);
   /// Draws text in the next cell of a table.
   void cell(std::string_view text);
   void cell(std::string_view text, Rgb rgb);

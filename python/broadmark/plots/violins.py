@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from broadmark.drawing import plain_numbers
 from broadmark.palette import light
 from broadmark.plots.cases import Cases
 from broadmark.plots.panels import label_rows, with_rows
@@ -34,7 +35,8 @@ def violins(cases: Cases) -> Figure:
             axes.plot(np.median(values), rows[label], "|", color=light("text"), markersize=5)
         if cases.log:
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-            axes.xaxis.set_major_formatter(FuncFormatter(lambda power, _: f"{10**power:g}"))
+            numbers = plain_numbers()
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda power, _: numbers(10**power)))
         else:
             axes.set_xlim(left=0)
         label_rows(axes, list(rows))

@@ -60,7 +60,7 @@ struct ColourMode {
 
 /// All modes; the first is the default.
 std::span<const ColourMode> colourModes();
-/// The index of the mode that shows missed and false pairs.
-std::size_t correctnessMode();
+/// The index of the mode with this id, which must exist.
+std::size_t colourModeIndex(std::string_view id);
 
 }  // namespace broadmark

@@ -36,11 +36,18 @@ class FrameValues {
   [[nodiscard]] Range block(unsigned level, std::uint32_t index) const;
   /// The range of the frames from `first` to `last`. O(log n).
   [[nodiscard]] Range within(std::uint32_t first, std::uint32_t last) const;
+  /// The first frame with the maximum from `first` to `last`. O(log n).
+  [[nodiscard]] std::optional<std::uint32_t> highest(std::uint32_t first, std::uint32_t last) const;
   /// The first frame with a known number from `first` to `last`. O(log n).
   [[nodiscard]] std::optional<std::uint32_t> firstKnown(std::uint32_t first,
                                                         std::uint32_t last) const;
 
  private:
+  /// The first frame in a block for which `contains(range)` is true.
+  template <class Predicate>
+  [[nodiscard]] std::optional<std::uint32_t> firstWhere(std::uint32_t first, std::uint32_t last,
+                                                        const Predicate& contains) const;
+
   std::vector<float> values_;
   std::vector<std::vector<Range>> levels_;  ///< [k]: of 2^(k + 1) frames; the last has one block
 };

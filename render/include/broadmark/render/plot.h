@@ -47,6 +47,12 @@ struct PlotOptions {
   /// A thin line on a separate scale at the right without a unit, or null.
   const PlotCurve* thin = nullptr;
   std::vector<PlotMarks> marks;
+  /// The sum of the curves, which are then stacked, without a legend; or null. If several frames
+  /// share a pixel, the one with the maximum is drawn, and a click selects it.
+  const FrameValues* stack_total = nullptr;
+  double least_top = 0;       ///< the scale of a stack reaches at least this value
+  std::string title;          ///< in the upper left corner
+  bool frame_numbers = true;  ///< below the axes
 };
 
 /// The user's input.
@@ -72,7 +78,8 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
 /// The level at which a pixel has one to two blocks of 2^level frames.
 unsigned plotLevel(double frames_per_pixel);
 
-/// A number with an SI prefix and three significant digits: "1.25 ms".
+/// A number with an SI prefix and three significant digits: "1.25 ms". Without a unit, up to four
+/// digits are exact: "1234", "5k", "12.3k", "1.5M".
 std::string withPrefix(double value, const char* unit);
 
 /// About `count` round values for an axis from `low` to `high`. On a logarithmic axis (`low` > 0):
