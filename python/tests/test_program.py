@@ -186,7 +186,7 @@ def test_unwritable_outputs_are_status_2(
     [
         (["read", "--csv"], "case,id"),
         (["table2", "-o"], "A processor"),
-        (["claims", "-o"], "A number counts"),
+        (["claims", "-o"], "Comparisons are judged"),
         (["plot", "bars", "-o"], "<?xml"),
         (["report", "--no-pictures", "-o"], "<!DOCTYPE html>"),
         (["history", "--json"], "{"),

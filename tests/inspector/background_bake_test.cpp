@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "engine/helpers.h"
-#include "support/folder_watch.h"
 
 namespace broadmark::tests {
 namespace {
@@ -60,9 +60,12 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
 }
 
 TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
-  const FolderWatch watch(directory / "");
-  startBake(bake, options({3000}, 100'000));
-  watch.waitUntil([&] { return !bake.report().items.empty(); });  // before its file exists
+  std::promise<void> planned;
+  startBake(bake, options({3000}, 100'000), [&](auto simulation, const CancelQuery&) {
+    planned.set_value();
+    return simulation;
+  });
+  planned.get_future().wait();
   EXPECT_THROW(startBake(bake, options({20}, 5)), InputError);
   bake.cancel();
   const BackgroundBake::Report report = wait();

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <imgui.h>
 
 #include <chrono>
 #include <cstdint>
@@ -21,10 +20,6 @@
 #include "support/wandering_boxes.h"
 
 namespace broadmark::tests {
-
-/// Whether letters look as in the golden pictures, which are of Debian 12: its Dear ImGui and its
-/// Inter. Newer ones keep the layout.
-inline constexpr bool kHasGoldenLetters = IMGUI_VERSION_NUM / 100 == 186;
 
 /// The built-in algorithms and the faulty ones.
 inline std::vector<Algorithm> algorithmsAndFaultyOnes() {

@@ -239,7 +239,7 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
 }
 
 TEST_F(InspectorTest, LooksAsItDid) {
-  if (!kHasGoldenLetters) GTEST_SKIP() << "the golden pictures have other letters";
+  if (!hasGoldenLetters()) GTEST_SKIP() << "the golden pictures have other letters";
   inspector.session().draft.choose("brownian");
   setParameters(inspector.session().draft.scene(), {{"engine", "kinematic"}});
   inspector.session().draft.simulate();
@@ -249,7 +249,7 @@ TEST_F(InspectorTest, LooksAsItDid) {
 
 // In a small window the authoring tools leave no space for a long legend.
 TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
-  if (!kHasGoldenLetters) GTEST_SKIP() << "the golden pictures have other letters";
+  if (!hasGoldenLetters()) GTEST_SKIP() << "the golden pictures have other letters";
   width = 800;
   height = 500;
   Session& session = inspector.session();

@@ -157,7 +157,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
 };
 
 TEST_P(PanelsLook, AsTheyDid) {
-  if (!kHasGoldenLetters) GTEST_SKIP() << "the golden pictures have other letters";
+  if (!hasGoldenLetters()) GTEST_SKIP() << "the golden pictures have other letters";
   prepare();
   const auto& [size, dark] = GetParam();
   for (const auto& panel : inspector.panels()) {

@@ -107,6 +107,7 @@ TEST_P(EachSource, SaysWhatItIs) {
 }
 
 TEST_P(EachSource, DrawsTheGoldenPicture) {
+  if (!hasGoldenLetters()) GTEST_SKIP() << "the golden pictures have other letters";
   EXPECT_TRUE(looksLikeGolden(TestScene(120).draw(context()),
                               places::source("tests/render/golden/boxes.png")));
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "broadmark/render/fonts.h"
 #include "broadmark/render/picture.h"
 
 namespace broadmark::tests {
@@ -48,6 +49,9 @@ inline testing::AssertionResult looksLike(const Picture& actual, const Picture& 
   return testing::AssertionFailure()
          << name << ": " << wrong << " of " << pixels << " pixels differ, see " << path.string();
 }
+
+/// Whether letters look as in the golden pictures, which have the Inter of Debian 12 (3.19).
+inline bool hasGoldenLetters() { return interfaceFont().size() == 258'992; }
 
 /// Compares with a picture in the source tree. With BROADMARK_UPDATE_GOLDEN=1 in the environment,
 /// writes that picture instead.

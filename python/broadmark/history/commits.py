@@ -182,10 +182,11 @@ def _log(repository: str) -> dict[str, tuple[int, datetime]]:
     except OSError as error:
         raise InputError(f"--git {repository}: git cannot be run: {error.strerror}") from None
     if done.returncode:
-        reason = done.stderr.strip().splitlines() or ["git failed"]
-        raise InputError(f"--git {repository}: {reason[-1]}")
-    lines = [line.split() for line in done.stdout.splitlines()]
-    return {name: (i, datetime.fromisoformat(date)) for i, (name, date) in enumerate(lines)}
+        lines = done.stderr.strip().splitlines() or ["git failed"]
+        reason = next((line for line in lines if line.startswith("fatal: ")), lines[-1])
+        raise InputError(f"--git {repository}: {reason}")
+    commits = [line.split() for line in done.stdout.splitlines()]
+    return {name: (i, datetime.fromisoformat(date)) for i, (name, date) in enumerate(commits)}
 
 
 def _resolved(repository: str, hashes: list[str], name: str, file: str) -> str:

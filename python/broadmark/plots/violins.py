@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -13,6 +15,13 @@ from broadmark.drawing import plain_numbers
 from broadmark.palette import light
 from broadmark.plots.cases import Cases
 from broadmark.plots.panels import label_rows, with_rows
+
+#: The argument of violinplot: since Matplotlib 3.10 `orientation`, before it `vert`.
+HORIZONTAL: dict[str, Any] = (
+    {"orientation": "horizontal"}
+    if "orientation" in inspect.signature(Axes.violinplot).parameters
+    else {"vert": False}
+)
 
 
 def violins(cases: Cases) -> Figure:
@@ -29,7 +38,7 @@ def violins(cases: Cases) -> Figure:
         for case, label in panel_cases["label"].items():
             values = np.log10(times[case]) if cases.log else times[case]
             violin = axes.violinplot(
-                [values], [rows[label]], vert=False, widths=0.9, showextrema=False
+                [values], [rows[label]], widths=0.9, showextrema=False, **HORIZONTAL
             )
             violin["bodies"][0].set(facecolor=styles[label].colour, alpha=0.75, linewidth=0)
             axes.plot(np.median(values), rows[label], "|", color=light("text"), markersize=5)
