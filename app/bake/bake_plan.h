@@ -34,7 +34,8 @@ struct BakePlan {
   [[nodiscard]] std::uint64_t bytes() const;
 };
 
-/// Called before and while existing recording `number` of `total` is checked; returning false stops.
+/// Called before and while existing recording `number` of `total` is checked; returning false
+/// stops.
 using PlanProgress =
     std::function<bool(const std::filesystem::path&, std::uint64_t number, std::uint64_t total)>;
 
