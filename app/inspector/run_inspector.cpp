@@ -98,7 +98,7 @@ void linkClipboard(Window& window) {
 }
 
 SimulationHost hostOf(const RunRequest& request) {
-  return request.hosts.in_process ? simulateInProcess : simulateInProcesses(request.plugins);
+  return request.hosts.in_process ? simulateInProcess : simulateInProcesses();
 }
 
 /// Opens the plan's source, and adds its algorithms.

@@ -1,5 +1,5 @@
-// Calls and replies are lines of JSON; frames, poses and bodies are in shared memory. The parent
-// keeps the simulation, whose parameters describe the scene, and never starts it.
+// Calls and replies are lines of JSON; frames, poses and bodies are in shared memory. The parent's
+// own simulation is never started: its parameters describe the scene.
 
 #include "request/simulation_process.h"
 
@@ -53,14 +53,13 @@ scenes::AuthoredScene readScene(const Json& message, const SharedMemory& memory)
   return scene;
 }
 
-/// A simulation whose frames come from a process.
+/// A simulation with frames from a process.
 class SimulationProcess : public Simulation {
  public:
-  SimulationProcess(std::unique_ptr<Simulation> simulation, std::vector<std::string> plugins,
-                    std::string program, CancelQuery cancelled)
+  SimulationProcess(std::unique_ptr<Simulation> simulation, std::string program,
+                    CancelQuery cancelled)
       : Simulation(simulation->listing()),
         simulation_(std::move(simulation)),
-        plugins_(std::move(plugins)),
         program_(std::move(program)),
         cancelled_(std::move(cancelled)) {}
 
@@ -109,8 +108,7 @@ class SimulationProcess : public Simulation {
     if (!reply) {
       constexpr std::chrono::seconds kGracePeriod{5};
       const std::string end = endText(process_.wait(kGracePeriod, cancelled_));
-      failure_ = fmt::format("{}: frame {}: engine '{}' {}", info_.name, index_,
-                             parameterValues(*simulation_)["engine"], end);
+      failure_ = fmt::format("{}: frame {}: engine '{}' {}", info_.name, index_, engine(), end);
       throw InputError(failure_);
     }
     Json json = parseJson(*reply, "simulation process");
@@ -121,6 +119,8 @@ class SimulationProcess : public Simulation {
   [[nodiscard]] const SharedMemory& memory() const { return *memory_; }
 
  private:
+  std::string engine() { return parameterValues(*simulation_)["engine"]; }
+
   /// Starts a process with the current parameters; ends an earlier one.
   void start() {
     info_ = simulation_->scene();
@@ -141,7 +141,12 @@ class SimulationProcess : public Simulation {
       message["scene"] = formatSceneParameters(*simulation_);
     }
     message["call"] = "open";
-    message["plugins"] = plugins_;
+    message["plugins"] = Json::array();
+    for (const EngineListing& listing : availableEngines()) {
+      if (listing.id == engine() && !listing.plugin.empty()) {
+        message["plugins"].push_back(listing.plugin);
+      }
+    }
     call(message);
   }
 
@@ -188,7 +193,6 @@ class SimulationProcess : public Simulation {
   }
 
   std::unique_ptr<Simulation> simulation_;  ///< describes the scene; never started
-  const std::vector<std::string> plugins_;
   const std::string program_;
   const CancelQuery cancelled_;
   std::optional<SharedMemory> memory_;  ///< set by the first start()
@@ -206,7 +210,7 @@ class SimulationProcess : public Simulation {
   std::vector<Pose> poses_;
 };
 
-/// One whose frames can be converted to authored scenes.
+/// The same with frames that can be converted to authored scenes.
 class SceneProcess final : public SimulationProcess, public scenes::SceneSource {
  public:
   using SimulationProcess::SimulationProcess;
@@ -287,14 +291,12 @@ std::unique_ptr<Simulation> simulateInProcess(std::unique_ptr<Simulation> simula
   return simulation;
 }
 
-SimulationHost simulateInProcesses(std::vector<std::string> plugins, std::string program) {
-  return [plugins = std::move(plugins), program = std::move(program)](
-             std::unique_ptr<Simulation> simulation,
-             CancelQuery cancelled) -> std::unique_ptr<Simulation> {
+SimulationHost simulateInProcesses(std::string program) {
+  return [program = std::move(program)](std::unique_ptr<Simulation> simulation,
+                                        CancelQuery cancelled) -> std::unique_ptr<Simulation> {
     const bool is_scene = dynamic_cast<scenes::SceneSource*>(simulation.get()) != nullptr;
     const auto make = [&]<class Process>(std::type_identity<Process>) {
-      return std::make_unique<Process>(std::move(simulation), plugins, program,
-                                       std::move(cancelled));
+      return std::make_unique<Process>(std::move(simulation), program, std::move(cancelled));
     };
     if (is_scene) return make(std::type_identity<SceneProcess>());
     return make(std::type_identity<SimulationProcess>());

@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "broadmark/harness/case_executor.h"
 #include "broadmark/scenes/simulation.h"
@@ -20,10 +19,8 @@ using SimulationHost =
 /// In this process, where calls cannot be cancelled.
 std::unique_ptr<Simulation> simulateInProcess(std::unique_ptr<Simulation>, CancelQuery);
 
-/// In processes that have the engines of these plug-ins: instances of `program`. A crash is an
-/// InputError.
-SimulationHost simulateInProcesses(std::vector<std::string> plugins,
-                                   std::string program = "/proc/self/exe");
+/// In processes, which are instances of `program`. A crash is an InputError.
+SimulationHost simulateInProcesses(std::string program = "/proc/self/exe");
 
 /// The process's side: serves its parent until that hangs up.
 void serveSimulation();

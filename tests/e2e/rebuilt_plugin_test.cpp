@@ -53,7 +53,7 @@ TEST_F(RebuiltPlugin, IsFasterOrSlower) {
        "expect frame = 6\n"
        "write frame build1\n"
        "expect status ~ \"repeated-search: 0.0\"\n"
-       "expect status ~ \"times as fast\"\n"
+       "expect status ~ \"times as fast on \"\n"
        "write frame build2\n"
        "expect status ~ \"1 of 1 frame wrong, 0 of 6 frames before\"\n"
        "expect frame = 1\n");

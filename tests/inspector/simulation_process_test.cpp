@@ -25,8 +25,7 @@ namespace {
 using testing::HasSubstr;
 
 const SimulationHost& processes() {
-  static const SimulationHost host =
-      simulateInProcesses({places::unrulyEngine()}, places::program());
+  static const SimulationHost host = simulateInProcesses(places::program());
   return host;
 }
 

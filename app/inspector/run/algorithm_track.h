@@ -36,7 +36,6 @@ struct TrackCurves {
 struct TrackSpec {
   int number = 0;
   Case test_case;
-
   int build = 0;  ///< number of times that the algorithm's plug-in has been loaded again
 
   /// Whether both tracks run the same case.

@@ -47,7 +47,7 @@ std::string rebuiltText(const TrackReport& before, const TrackReport& now) {
   if (was_right && fresh.wrong == 0) {
     const TimeRatios ratios = ratiosOf(before, now);
     if (!ratios.highest) return fmt::format("{}: rebuilt", id);
-    return fmt::format("{}: {:.3g} times as fast, by {}", id, ratios.median,
+    return fmt::format("{}: {:.3g} times as fast on {}", id, ratios.median,
                        counted(ratios.first_slower + ratios.second_slower, "frame"));
   }
   std::string then = fmt::format("{} before", wrongText(former));
@@ -88,7 +88,9 @@ void PluginList::watch(const std::string& plugin) {
 std::vector<Algorithm> PluginList::algorithmsIn(const std::string& plugin) const {
   std::vector<Algorithm> others = tracks_.algorithms();
   std::erase_if(others, [&](const Algorithm& other) { return other.plugin == plugin; });
-  return algorithmsOf(plugin, others, PluginLoading::copy);
+  std::vector<Algorithm> algorithms = algorithmsOf(plugin, others, PluginLoading::copy);
+  if (!algorithms.empty()) return algorithms;
+  throw InputError(fmt::format("{}: has no algorithm; its engines need --plugin", plugin));
 }
 
 void PluginList::load(const fs::path& file) {
@@ -100,10 +102,6 @@ void PluginList::load(const fs::path& file) {
     const std::string plugin = pluginOf(file);
     watch(plugin);
     const std::vector<Algorithm> loaded = algorithmsIn(plugin);
-    if (loaded.empty()) {
-      throw InputError(
-          fmt::format("{}: has no algorithm; its engines need --plugin", file.string()));
-    }
     tracks_.replaceAlgorithms(plugin, loaded);
     if (loaded.size() == 1) tracks_.add(loaded.front().id);
     notices_.setStatus(

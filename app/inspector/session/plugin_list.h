@@ -46,6 +46,7 @@ class PluginList {
 
   static Stamp stampOf(const std::string& plugin);
   void watch(const std::string& plugin);
+  /// Throws InputError, also if there are none.
   [[nodiscard]] std::vector<Algorithm> algorithmsIn(const std::string& plugin) const;
   void reload(const std::string& plugin, const RunProgress& progress);
 
@@ -57,7 +58,7 @@ class PluginList {
 };
 
 /// The frames and times of a rebuilt algorithm beside those of its former build:
-/// "kd: fixed: 0 of 60 frames wrong, 1 of 1 before", "kd: 1.31 times as fast on 60 frames".
+/// "kd: fixed: 0 of 60 frames wrong, 1 of 1 frame before", "kd: 1.31 times as fast on 60 frames".
 std::string rebuiltText(const TrackReport& before, const TrackReport& now);
 
 }  // namespace broadmark

@@ -89,7 +89,7 @@ class TrackList {
         }
       }
     }
-    if (find(shown_) == nullptr) shown_ = list.empty() ? 0 : list.front().number;
+    if (shown_ != 0 && find(shown_) == nullptr) shown_ = list.empty() ? 0 : list.front().number;
     applyEdits();
   }
 
