@@ -148,11 +148,9 @@ def style(algorithm: str) -> Style:
 
 
 def plain_numbers() -> FuncFormatter:
-    """Ticks without a unit: 0.5, 20, 1k, 10M."""
+    """Ticks without a unit: 0.5, 2000, 10k, 5M."""
     engineering = EngFormatter(sep="")
-    return FuncFormatter(
-        lambda value, _: engineering(value) if abs(value) >= 1000 else f"{value:g}"
-    )
+    return FuncFormatter(lambda value, _: engineering(value) if abs(value) >= 1e4 else f"{value:g}")
 
 
 def log_scale(axes: Any, name: str, unit: str = "") -> None:

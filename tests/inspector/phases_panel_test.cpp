@@ -45,12 +45,12 @@ class PhasesPanelTest : public testing::Test {
     session.draft.simulate();
     for (const char* id : {"grid-bf", "sap"}) session.tracks.add(id);
     session.playback.goTo(kFrames);
-    settle();
+    drawUntilIdle();
     session.notices.raisePanel("Phases");
-    settle();
+    drawUntilIdle();
   }
 
-  void settle() {
+  void drawUntilIdle() {
     for (int i = 0; i < 6 || !input.empty(); ++i) {
       const Framebuffer target(gl, 1440, 900, 1);
       inspector.draw(input, 1440, 900, 1.0 / 60, [&] { target.bind(); });
@@ -69,7 +69,7 @@ class PhasesPanelTest : public testing::Test {
     for (const bool down : {true, false}) {
       input.push({.kind = InputEvent::Kind::button, .code = 0, .down = down});
     }
-    settle();
+    drawUntilIdle();
   }
   void click(const std::string& widget) {
     const WidgetPlace at = place(widget);
@@ -105,7 +105,7 @@ TEST_F(PhasesPanelTest, ARowGoesToTheSlowestFrameOfTheSpan) {
   click("Phases/mean of sap");
   EXPECT_EQ(value("frame"), std::to_string(kPeak));
   inspector.session().timeline.select(200, 300);
-  settle();
+  drawUntilIdle();
   click("Phases/mean of sap");
   EXPECT_EQ(value("frame"), "200");
 }
@@ -137,7 +137,7 @@ TEST_F(PhasesPanelTest, EveryHeadingIsExplained) {
   std::size_t headings = 0;
   for (const char* panel : {"Phases", "Results", "Timeline", "Cases", "Duel"}) {
     inspector.session().notices.raisePanel(panel);
-    settle();
+    drawUntilIdle();
     for (const auto& [name, at] : inspector.ui().places()) {
       const std::string prefix = std::string(panel) + "/by/";
       if (!name.starts_with(prefix)) continue;
