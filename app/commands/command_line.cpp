@@ -140,8 +140,10 @@ class CommandLine {
     app_.set_help_all_flag("--help-all", "print the help of all commands");
     CLI::Option* verbose = app_.add_flag(
         "--verbose", verbose_, "with --version: also print compiler and versions of libraries");
-    const auto version = [this] { return verbose_ ? verboseVersion() : thisEnvironment().version; };
-    verbose->needs(app_.set_version_flag("--version", version, "print the version"));
+    const auto version = [this] {
+      return verbose_ ? verboseVersion() : buildName(thisEnvironment());
+    };
+    verbose->needs(app_.set_version_flag("--version", version, "print version, commit and build"));
   }
 
   /// Parses a command line. Returns the requested help; nothing if there is a command to run.

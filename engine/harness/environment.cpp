@@ -113,7 +113,7 @@ std::string commitName(const Environment& environment) {
 }
 
 std::string buildName(const Environment& environment) {
-  return fmt::format("version {}, commit {}, {}{}", environment.version, commitName(environment),
+  return fmt::format("{} (commit {}, {}{})", environment.version, commitName(environment),
                      environment.compiler, environment.compiler_flags);
 }
 

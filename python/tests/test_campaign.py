@@ -432,7 +432,7 @@ def test_spans_and_repetitions_of_a_block(write: Any, launch: Any, tmp_path: pat
         BLOCK | {"objects": 20, "frames": 9, "span": [[1, 2], [6, 8]]},
         BLOCK | {"objects": 30, "frames": 9, "span": [[3, 5]]},
     ]
-    # A world whose bodies come and go, too.
+    # Bodies appear and disappear.
     blocks += [{"scenes": "fountain", "objects": 40, "frames": 9, "span": [[2, 3], [7, 9]]}]
     status, _, error = launch(write(recordings=blocks, algorithm=["kd"]))
     assert status == 0, error

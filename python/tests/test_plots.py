@@ -121,7 +121,7 @@ def test_every_algorithm_has_its_own_style(tmp_path: pathlib.Path) -> None:
     single, parallel = style("kd"), style("kd-mt")
     assert (single.colour, single.marker) == (parallel.colour, parallel.marker)
     assert not single.filled and parallel.filled
-    # That of an algorithm that the palette does not list is the same, whoever else is there.
+    # Algorithms that the palette does not list have styles by their names.
     assert style("mine") == style("mine") and style("mine") != style("yours")
     cases = [case("Brownian", 1000, id_, 0.1) for id_ in ("kd-mt", "mine", "yours-mt", "gpu-grid")]
     single_panel, parallel_panel = drawn(write(tmp_path / "a.json", cases), FigureOptions()).axes

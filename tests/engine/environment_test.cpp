@@ -44,7 +44,7 @@ TEST(Environment, BuildsAreNamed) {
   environment.commit = std::string(10, 'a') + std::string(30, 'b');
   EXPECT_EQ(commitName(environment), "aaaaaaaaaa");
   environment.dirty = true;
-  EXPECT_EQ(buildName(environment), "version 1.2.3, commit aaaaaaaaaa with changes, gcc 12 -O3");
+  EXPECT_EQ(buildName(environment), "1.2.3 (commit aaaaaaaaaa with changes, gcc 12 -O3)");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class Cases:
 
 
 def timed_cases(results: Results, *, log: bool, note: str) -> Cases:
-    """The cases with a time: complete and without wrong answers, but not self-checks, whose times are no
+    """The cases with a time: complete, without wrong answers, and no self-checks: their times are no
     rivals."""
     cases = results.cases
     ok = _reasons(cases) == ""
