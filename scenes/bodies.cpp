@@ -38,13 +38,19 @@ PhysicsBody& Bodies::add(std::size_t id, BodyDescription description) {
 }
 
 void Bodies::remove(std::size_t id) {
+  if (bodies_[id] == nullptr) return setScenery(id, kEmptyBox);
   engine_->removeBody(*bodies_[id]);
   bodies_[id] = nullptr;
 }
 
 void Bodies::place(std::size_t id, const Shape& shape, const Pose& pose) {
-  boxes_[id] = tightBox(shape, pose);
+  setScenery(id, tightBox(shape, pose));
   poses_[id] = pose;
+}
+
+void Bodies::setScenery(std::size_t id, const Aabb& box) {
+  boxes_[id] = box;
+  changed_scenery_.push_back(static_cast<std::uint32_t>(id));
 }
 
 void Bodies::setLayer(std::size_t id, std::uint8_t layer) {
@@ -77,6 +83,11 @@ Frame Bodies::record(std::uint32_t frame) {
     boxes_[id] = box;
   }
   std::erase_if(ids_, [this](std::uint32_t id) { return bodies_[id] == nullptr; });
+  if (!changed_scenery_.empty()) {
+    changed_.insert(changed_.end(), changed_scenery_.begin(), changed_scenery_.end());
+    changed_scenery_.clear();
+    std::ranges::sort(changed_);
+  }
   if (frame == 0) changed_.clear();
   return {frame, boxes_, changed_, filter_changes_ ? &filter_ : nullptr, filter_changed_};
 }

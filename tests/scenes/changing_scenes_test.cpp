@@ -280,6 +280,51 @@ TEST(WorldsScene, ACopyStartsAgainAfterAnEpisode) {
   EXPECT_EQ(frames[31][20], frames[11][20]) << "the other copy half an episode later";
 }
 
+TEST(StreamingScene, TilesAroundTheViewerAreLoadedInBatchesAndUnloaded) {
+  auto simulation = sceneWith("streaming", {{"objects", "2000"},
+                                            {"frames", "120"},
+                                            {"tiles", "6"},
+                                            {"view", "1"},
+                                            {"batches", "3"},
+                                            {"period", "100"}});
+  EXPECT_FALSE(simulation->scene().all_present);
+  const Frames frames = allFrames(*simulation);
+  const std::vector<std::uint32_t> movers = bodiesIn(simulation->scene(), 1);
+  EXPECT_EQ(movers.size(), 40U);
+  EXPECT_EQ(populationOf(frames[0]), movers.size());
+  EXPECT_LT(populationOf(frames[1]), populationOf(frames[2]));
+  EXPECT_LT(populationOf(frames[2]), populationOf(frames[3]));
+  // About nine of 36 tiles.
+  for (std::size_t k = 10; k < frames.size(); ++k) {
+    EXPECT_NEAR(static_cast<double>(populationOf(frames[k])), 40 + 1960 / 4, 250) << k;
+  }
+  std::size_t loads = 0;
+  for (std::uint32_t body = 40; body < 2000; ++body) {
+    const Aabb* place = nullptr;
+    for (std::size_t k = 1; k < frames.size(); ++k) {
+      const Aabb& box = frames[k][body];
+      if (isEmpty(box)) continue;
+      if (place != nullptr) ASSERT_EQ(box, *place) << body;
+      place = &box;
+      if (isEmpty(frames[k - 1][body])) ++loads;
+    }
+  }
+  EXPECT_GT(loads, 1960U);  // some twice
+}
+
+TEST(StreamingScene, OneTileIsLoadedAtTheStart) {
+  const Frames at_once = allFrames(*sceneWith(
+      "streaming", {{"objects", "500"}, {"frames", "5"}, {"tiles", "1"}, {"batches", "1"}}));
+  EXPECT_EQ(populationOf(at_once[0]), 10U);
+  EXPECT_EQ(populationOf(at_once[1]), 10U);
+  EXPECT_EQ(populationOf(at_once[2]), 500U);
+  EXPECT_EQ(populationOf(at_once[5]), 500U);
+  const Frames batches = allFrames(*sceneWith(
+      "streaming", {{"objects", "500"}, {"frames", "7"}, {"tiles", "1"}, {"batches", "5"}}));
+  EXPECT_EQ(populationOf(batches[2]), 10U + 98);
+  EXPECT_EQ(populationOf(batches[6]), 500U);
+}
+
 TEST(SpotScene, AllBodiesAreAtOnePlaceAndThenApart) {
   for (const std::string engine : {"bullet", "kinematic"}) {
     auto simulation =

@@ -29,9 +29,10 @@ class Bodies {
   /// Adds the absent body `id` to the engine, with the layer and world of the scene's initial
   /// filter.
   PhysicsBody& add(std::size_t id, BodyDescription);
-  /// Removes body `id`, which must be in the engine.
+  /// Removes body `id` from the engine or the scenery.
   void remove(std::size_t id);
-  /// Makes the absent body `id` part of the scenery.
+  /// Makes the absent body `id` part of the scenery. A body enters or leaves it at most once a
+  /// frame.
   void place(std::size_t id, const Shape&, const Pose&);
 
   /// Gives body `id` another layer from the next recorded frame on; in the engine it keeps its own.
@@ -51,6 +52,7 @@ class Bodies {
 
  private:
   void applyLayers();
+  void setScenery(std::size_t id, const Aabb& box);
 
   PhysicsEngine* engine_;
   CollisionFilter initial_filter_;
@@ -65,6 +67,7 @@ class Bodies {
   std::vector<std::uint32_t> ids_;    ///< in the engine, or vanished since the last frame
   std::vector<std::uint32_t> added_;  ///< bodies not merged into ids_ yet
   std::vector<std::uint32_t> changed_;
+  std::vector<std::uint32_t> changed_scenery_;  ///< since the last frame
 };
 
 }  // namespace broadmark::scenes
