@@ -61,7 +61,7 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
 
 TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
   std::promise<void> planned;
-  startBake(bake, options({3000}, 100'000), [&](auto simulation, const CancelQuery&) {
+  startBake(bake, options({3000}, 10'000), [&](auto simulation, const CancelQuery&) {
     planned.set_value();
     return simulation;
   });
@@ -78,7 +78,7 @@ TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
 
 TEST_F(BackgroundBakeTest, EndsWithItsOwner) {
   BackgroundBake another;
-  startBake(another, options({3000}, 100'000));
+  startBake(another, options({3000}, 10'000));
 }
 
 TEST_F(BackgroundBakeTest, WhatCannotBeWrittenIsAFailure) {
