@@ -496,8 +496,6 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
       // A scrolling table is a child window that must be entered.
       if (row == 0 && prefix == "Results/") arrive(GLFW_KEY_ENTER);
     }
-    // The first widget to be focused may be below others.
-    for (int row = 0; row < 70 && !unreached.empty(); ++row) arrive(GLFW_KEY_UP);
     // Widgets beside others: the last of a row, and the second.
     for (const int beside : {3, 1}) {
       // Move the focus to the last row.
@@ -511,6 +509,8 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
         for (int step = 0; step < beside; ++step) arrive(GLFW_KEY_RIGHT);
       }
     }
+    // The first of a row, if another one had the focus at first.
+    for (int step = 0; step < 3 && !unreached.empty(); ++step) arrive(GLFW_KEY_LEFT);
     EXPECT_THAT(unreached, testing::IsEmpty()) << prefix;
     press(GLFW_KEY_ESCAPE);
   }
