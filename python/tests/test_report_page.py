@@ -202,6 +202,24 @@ def test_two_files_are_compared(opened: Page) -> None:
     assert "1 regressed" in " ".join(opened.texts("#compared p")).lower()
 
 
+def test_worst_frames_and_ageing(opened: Page) -> None:
+    ageing = case("kd", 100, 1e-5)
+    ageing["recording"]["frames"] = 100
+    times = [[10_000] * 50 + [40_000] * 50, [10_000] * 50 + [40_000] * 50]
+    times[0][29], times[1][29] = 900_000, 90_000  # a stall in one repetition
+    for phase in ageing["frames"]:
+        ageing["frames"][phase] = times
+    for counts in ageing["frame_counts"].values():
+        counts[:] = [1] * 100
+    opened.show(write_results(opened.folder / "r.jsonl", [ageing, case("bf", 100, 2e-5)]))
+    opened.section("worst")
+    cells = opened.texts("#worst tbody td")
+    assert cells[0] == "bf" and cells[4:7] == ["20.0\u00a0µs", "1.00", "1"]
+    assert cells[7] == "–"  # too few frames
+    kd = cells[cells.index("kd") :]
+    assert kd[4:8] == ["90.0\u00a0µs", "9.00", "30", "4.00"]
+
+
 def test_a_filter_of_statuses_hides_no_gap(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.filter("status", "ok")

@@ -25,6 +25,9 @@ TEXTS = [column["key"] for column in CASE_COLUMNS if column["kind"] == "text"] +
     "file",
 ]
 
+#: The least number of frames for times at the end beside those at the start.
+MIN_AGEING_FRAMES = 100
+
 #: The facts of a machine: title and key in the environment.
 FACTS = [
     ("Processor", "cpu"),
@@ -64,6 +67,7 @@ def page_data(results: Results) -> dict[str, Any]:
     columns["complete"] = [int(complete) for complete in cases.get("complete", [])]
     columns["standard_error"] = _numbers(map(_standard_error, details))
     columns["load"] = _numbers(case.get("conditions", {}).get("load_average") for case in details)
+    columns |= _worst_frames(details)
     columns["frames_run"] = [max(map(len, case["frames"]["total"]), default=0) for case in details]
     columns["counted"] = _texts(map(_counted, details))
     columns["condition_command"] = _texts(
@@ -133,6 +137,27 @@ def _standard_error(case: dict[str, Any]) -> float | None:
     if len(means) < 2 or not all(means):
         return None
     return float(np.std(means, ddof=1) / math.sqrt(len(means)) / np.mean(means))
+
+
+def _worst_frames(details: list[dict[str, Any]]) -> dict[str, list[Any]]:
+    """Columns: the slowest frame's time and number, from 1, and the median of the last tenth of the
+    frames over that of the first; None without frames, or too few."""
+    worst: list[Any] = []
+    numbers: list[Any] = []
+    ageing: list[Any] = []
+    for case in details:
+        repetitions = [times for times in case["frames"]["total"] if len(times)]
+        count = min(map(len, repetitions), default=0)
+        times = (
+            np.min([np.asarray(r[:count]) for r in repetitions], axis=0) if count else np.empty(0)
+        )
+        worst.append(float(times.max()) / 1e9 if count else None)
+        numbers.append(int(times.argmax()) + 1 if count else None)
+        tenth = count // 10
+        early = float(np.median(times[:tenth])) if count >= MIN_AGEING_FRAMES else 0.0
+        ageing.append(float(np.median(times[-tenth:])) / early if early else None)
+    columns = {"worst_seconds": worst, "worst_frame": numbers, "late_over_early": ageing}
+    return {name: _numbers(values) for name, values in columns.items()}
 
 
 def _counted(case: dict[str, Any]) -> str:

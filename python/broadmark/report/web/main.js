@@ -1,6 +1,6 @@
 // Starts the page. Sections are drawn when they come near the viewport, or for printing.
 
-const kSections = { compared: drawCompared, ratios: drawRatios, scaling: drawScaling, memory: drawMemory, frames: drawFrames,
+const kSections = { compared: drawCompared, ratios: drawRatios, scaling: drawScaling, memory: drawMemory, frames: drawFrames, worst: drawWorst,
                     failures: drawFailures, cases: drawCases };
 
 // Redraws the sections, those outside the viewport when they come near it.
