@@ -100,7 +100,7 @@ TEST_P(EveryScene, ThreadsDoNotInfluenceEachOther) {
 }
 
 bool hasSizesOfItsOwn(const std::string& scene) {
-  return scene == "city" || scene == "shooter" || scene == "world";
+  return scene == "city" || scene == "shooter" || scene == "streaming" || scene == "world";
 }
 
 TEST_P(EveryScene, BoxesAreValidTightAndStayInTheWorld) {
