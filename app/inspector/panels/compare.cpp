@@ -14,9 +14,8 @@
 namespace broadmark::panels::compare {
 namespace {
 
-constexpr float kPairsShare = 0.42F;       // of the width; the rest is the plot's
-constexpr float kMinWidthForBoth = 560;    // units; a narrower panel shows one of both
-constexpr double kSummaryInterval = 0.25;  // seconds
+constexpr float kPairsShare = 0.42F;     // of the width; the rest is the plot's
+constexpr float kMinWidthForBoth = 560;  // units; a narrower panel shows one of both
 
 class ComparePanel final : public Panel {
  public:
@@ -126,18 +125,13 @@ class ComparePanel final : public Panel {
 
   /// Throttled, because long recordings take a while.
   void summarise(const TrackReport& first, const TrackReport& second) {
-    const std::array<int, 2> numbers = {first.spec.number, second.spec.number};
-    const double now = ImGui::GetTime();
-    if (numbers == summarised_ && now < next_summary_) return;
-    summarised_ = numbers;
-    next_summary_ = now + kSummaryInterval;
+    if (!throttle_.isDue({first.spec.number, second.spec.number})) return;
     ratios_ = ratiosOf(first, second);
   }
 
   bool times_only_ = false;
   TimeRatios ratios_;
-  std::array<int, 2> summarised_{};  ///< track numbers
-  double next_summary_ = 0;          ///< seconds of the user interface
+  SummaryThrottle<std::array<int, 2>> throttle_;  ///< by the tracks' numbers
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Panels: the tabs of the docked areas.
 #pragma once
 
+#include <imgui.h>
+
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -36,6 +38,25 @@ struct PanelContext {
                         Timeline& zoom, bool is_playback = true) const;
   /// Draws a button as wide as the panel.
   bool wideButton(const char* label, const char* tooltip, bool enabled = true) const;
+};
+
+/// Limits how often a panel computes a summary that takes a while.
+template <class Key>
+class SummaryThrottle {
+ public:
+  /// Whether to compute it now: for another key, or some time after the last one.
+  bool isDue(const Key& key) {
+    constexpr double kSeconds = 0.25;
+    const double now = ImGui::GetTime();
+    if (key == key_ && now < next_) return false;
+    key_ = key;
+    next_ = now + kSeconds;
+    return true;
+  }
+
+ private:
+  Key key_{};
+  double next_ = 0;  ///< seconds of the user interface
 };
 
 /// Lays out buttons of equal width, `count` per row.

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inspector/panels/panel.h"
@@ -16,12 +17,11 @@
 namespace broadmark::panels::phases {
 namespace {
 
-constexpr float kMeansWidth = 400;        // units, of the table without its first column
-constexpr float kMinStackShare = 0.35F;   // of the width
-constexpr float kMinWidthForBoth = 640;   // units; a narrower panel shows one of both
-constexpr float kMinStackHeight = 42;     // units
-constexpr float kShading = 0.4F;          // of a cell that has all the time of its row
-constexpr double kSummarySeconds = 0.25;  // between two computations of the means
+constexpr float kMeansWidth = 400;       // units, of the table without its first column
+constexpr float kMinStackShare = 0.35F;  // of the width
+constexpr float kMinWidthForBoth = 640;  // units; a narrower panel shows one of both
+constexpr float kMinStackHeight = 42;    // units
+constexpr float kShading = 0.4F;         // of a cell that has all the time of its row
 
 /// The phases that add up to the total; a colour each.
 constexpr std::size_t kStacked = std::tuple_size_v<decltype(Palette::phase)>;
@@ -71,14 +71,11 @@ class PhasesPanel final : public Panel {
   /// Throttled, because long spans take a while.
   void summarise() {
     const auto& tracks = progress->tracks;
-    const double now = ImGui::GetTime();
-    if (summarised_ == span() && means_.size() == tracks.size() && now < next_summary_) return;
+    if (!throttle_.isDue({span(), tracks.size()})) return;
     if (means_.size() != tracks.size()) {
       order_.resize(tracks.size());
       std::iota(order_.begin(), order_.end(), 0);
     }
-    summarised_ = span();
-    next_summary_ = now + kSummarySeconds;
     means_.clear();
     for (const TrackReport& track : tracks) {
       Means& means = means_.emplace_back();
@@ -247,8 +244,7 @@ class PhasesPanel final : public Panel {
   bool chooses_colours_ = false;    ///< once the frame of showCost() is shown
   std::vector<Means> means_;        ///< by track
   std::vector<std::size_t> order_;  ///< of the tracks, by the table's sorting
-  FrameSpan summarised_;            ///< span of means_
-  double next_summary_ = 0;         ///< seconds of the user interface
+  SummaryThrottle<std::pair<FrameSpan, std::size_t>> throttle_;  ///< by span and number of tracks
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "broadmark/statistics/statistics.h"
@@ -112,10 +113,7 @@ class TimelinePanel final : public Panel {
   /// Throttled, because sorting long spans takes a while.
   void summarise(FrameSpan span) {
     const auto& tracks = progress->tracks;
-    const double now = ImGui::GetTime();
-    if (summarised_ == span && statistics_.size() == tracks.size() && now < next_summary_) return;
-    summarised_ = span;
-    next_summary_ = now + 0.25;
+    if (!throttle_.isDue({span, tracks.size()})) return;
     statistics_.clear();
     for (const TrackReport& track : tracks) {
       statistics_.push_back(statisticsOf(valuesOf(track), track.curves.disturbed, span));
@@ -216,9 +214,8 @@ class TimelinePanel final : public Panel {
   bool span_only_ = false;
   bool shows_span_ = false;
   std::set<int> hidden_;
-  std::vector<SpanStatistics> statistics_;  ///< by track
-  FrameSpan summarised_;                    ///< span of statistics_
-  double next_summary_ = 0;                 ///< seconds of the user interface
+  std::vector<SpanStatistics> statistics_;                       ///< by track
+  SummaryThrottle<std::pair<FrameSpan, std::size_t>> throttle_;  ///< by span and number of tracks
 };
 
 }  // namespace
