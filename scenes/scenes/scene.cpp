@@ -35,6 +35,13 @@ void Scene::start(Stage& stage) {
   stage.engine.setGravity({0, -static_cast<float>(settings.gravity * settings.side()), 0});
 }
 
+void setFreeFlight(Settings& settings) {
+  settings.engine.value = "kinematic";
+  settings.gravity = 0;
+  settings.physics.friction = 0;
+  settings.physics.restitution = 1;
+}
+
 Vec3 launchVelocity(const Settings& settings, Random& random) {
   return random.inBall(settings.initial_speed * settings.side());
 }

@@ -13,12 +13,9 @@ namespace {
 class Spot final : public Scene {
  public:
   void setDefaults(Settings& settings) const override {
-    settings.engine.value = "kinematic";
+    setFreeFlight(settings);
     settings.density = 0.02;
     settings.initial_speed = 0.5;
-    settings.gravity = 0;
-    settings.physics.friction = 0;
-    settings.physics.restitution = 1;
   }
 
   void visitParameters(const ParameterVisitor& visit) override {

@@ -61,6 +61,9 @@ class Scene : public Parametrised {
   virtual void act(Stage&, std::uint32_t /*frame*/) {}
 };
 
+/// Defaults of bodies that fly straight on: kinematic, without gravity, bouncing elastically.
+void setFreeFlight(Settings&);
+
 /// A random initial velocity: uniform in a ball, in proportion to the world's side.
 Vec3 launchVelocity(const Settings&, Random&);
 
