@@ -1,7 +1,7 @@
 """Reproducible figures, and the styles of algorithms in them. The same input gives the same bytes.
 
-Colour and marker show the algorithm, as assets/palette.txt states them. Figures are made without pyplot and within a style context, so no display is needed and no
-global setting changes.
+Colour and marker show the algorithm, as assets/palette.txt states them. Figures are made without
+pyplot and within a style context, so no display is needed and no global setting changes.
 """
 
 from __future__ import annotations

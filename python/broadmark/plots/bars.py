@@ -50,8 +50,4 @@ def bars(cases: Cases) -> Figure:
             )
         label_rows(axes, list(rows))
 
-    return with_rows(
-        cases,
-        paint,
-        x="milliseconds",
-    )
+    return with_rows(cases, paint, x="milliseconds")

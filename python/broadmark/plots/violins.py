@@ -50,8 +50,4 @@ def violins(cases: Cases) -> Figure:
             axes.set_xlim(left=0)
         label_rows(axes, list(rows))
 
-    return with_rows(
-        cases,
-        paint,
-        x="milliseconds per frame",
-    )
+    return with_rows(cases, paint, x="milliseconds per frame")
