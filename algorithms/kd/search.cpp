@@ -151,11 +151,7 @@ void Searcher::addPairs() {
     const bool listed_is_moved = hit.a >= s.listed_moved && hit.a < s.own_unchanged;
     count += own_is_moved || (listed_is_moved && hit.b >= s.own_unchanged) ? 1 : 0;
   }
-  if (scene_->filter != nullptr) {
-    Pair* const end = std::remove_if(
-        room, room + count, [this](Pair pair) { return !scene_->filter->wanted(pair.a, pair.b); });
-    count = static_cast<std::size_t>(end - room);
-  }
+  if (scene_->filter != nullptr) count = scene_->filter->retainWanted({room, count});
   pairs_->advance(count);
 }
 

@@ -9,6 +9,7 @@ namespace broadmark {
 void PairBroadPhase::initialize(const SceneInfo&, const Frame&, ExecutionContext& execution) {
   execution_ = &execution;
   buffers_.resize(static_cast<std::size_t>(execution.threads()));
+  for (PairBuffer& buffer : buffers_) buffer.setMap(map_);
   runs_.reserve(buffers_.size());
 }
 
@@ -22,14 +23,20 @@ void PairBroadPhase::searchOverlaps() {
     throw std::logic_error("an override of initialize() does not call its base's");
   }
   findPairs();
-  runs_.clear();
-  for (const PairBuffer& buffer : buffers_) runs_.push_back(buffer.run());
+  collectRuns();
 }
 
 void PairBroadPhase::searchQueries(const QueryBatch& batch) {
   findHits(batch);
+  collectRuns();
+}
+
+void PairBroadPhase::collectRuns() {
   runs_.clear();
-  for (const PairBuffer& buffer : buffers_) runs_.push_back(buffer.run());
+  for (PairBuffer& buffer : buffers_) {
+    buffer.flush();
+    runs_.push_back(buffer.run());
+  }
 }
 
 void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first,

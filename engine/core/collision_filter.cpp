@@ -38,6 +38,7 @@ CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const Layer
   store(&BodyGroups::layer, std::uint8_t{0}, data->layers);
   store(&BodyGroups::world, 0U, data->worlds);
   store(&BodyGroups::tags, BodyGroups::kNoTags, data->tags);
+  for (const BodyGroups::Tags& own : data->tags) data->tag_vectors.push_back(toVector(own));
   for (const std::uint8_t layer : data->layers) {
     if (layer >= LayerMatrix::kLayers) {
       throw std::invalid_argument("layer " + std::to_string(layer) + ": there are layers 0 to " +
@@ -106,10 +107,38 @@ CollisionFilter CollisionFilter::with(std::span<const std::uint32_t> changed,
   return with(changed, groups, count);
 }
 
-bool CollisionFilter::Data::shareTag(const BodyGroups::Tags& a, const BodyGroups::Tags& b) {
-  return std::ranges::any_of(a, [&](std::uint32_t tag) {
-    return tag != BodyGroups::kNoTag && std::ranges::find(b, tag) != b.end();
-  });
+/// Tests only the criteria of this filter, without branches: a pair's result cannot be predicted.
+template <bool kLayers, bool kWorlds, bool kTags>
+std::size_t CollisionFilter::Data::retainWanted(std::span<Pair> pairs) const {
+  std::size_t count = 0;
+  for (const Pair pair : pairs) {
+    pairs[count] = pair;
+    bool wanted = true;
+    if (pair.a < pair.b) [[likely]] {
+      if constexpr (kLayers) wanted &= matrix.collide(layers[pair.a], layers[pair.b]);
+      if constexpr (kWorlds) wanted &= worlds[pair.a] == worlds[pair.b];
+      if constexpr (kTags) wanted &= !shareTag(tag_vectors[pair.a], tag_vectors[pair.b]);
+    }
+    count += wanted ? 1 : 0;
+  }
+  return count;
+}
+
+std::size_t CollisionFilter::retainWanted(std::span<Pair> pairs) const {
+  if (data_ == nullptr) return pairs.size();
+  if (data_->layers.empty() && !data_->matrix.collide(0, 0)) {
+    const auto dropped = std::ranges::remove_if(pairs, [](Pair pair) { return pair.a < pair.b; });
+    return pairs.size() - dropped.size();
+  }
+  using Retain = std::size_t (Data::*)(std::span<Pair>) const;
+  constexpr Retain kRetain[2][2][2] = {
+      {{&Data::retainWanted<false, false, false>, &Data::retainWanted<false, false, true>},
+       {&Data::retainWanted<false, true, false>, &Data::retainWanted<false, true, true>}},
+      {{&Data::retainWanted<true, false, false>, &Data::retainWanted<true, false, true>},
+       {&Data::retainWanted<true, true, false>, &Data::retainWanted<true, true, true>}}};
+  const Retain retain =
+      kRetain[!data_->layers.empty()][!data_->worlds.empty()][!data_->tags.empty()];
+  return (*data_.*retain)(pairs);
 }
 
 bool operator==(const CollisionFilter& a, const CollisionFilter& b) {
@@ -124,7 +153,8 @@ LiveFilter::LiveFilter(const CollisionFilter& first, std::size_t bodies)
   data_->matrix = first.matrix();
   data_->worlds.assign(first.worlds().begin(), first.worlds().end());
   data_->layers.resize(bodies);
-  data_->tags.resize(bodies, BodyGroups::kNoTags);
+  data_->tags.resize(bodies);
+  data_->tag_vectors.resize(bodies);
   for (std::uint32_t body = 0; body < bodies; ++body) update(body, first);
 }
 
@@ -138,6 +168,7 @@ void LiveFilter::update(std::uint32_t body, const CollisionFilter& source) {
   const BodyGroups groups = source.groupsOf(body);
   data_->layers[body] = groups.layer;
   data_->tags[body] = groups.tags;
+  data_->tag_vectors[body] = CollisionFilter::toVector(groups.tags);
 }
 
 }  // namespace broadmark

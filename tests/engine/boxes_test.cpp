@@ -81,6 +81,37 @@ TEST(PairBuffer, RoomCountsOnlyAfterAdvance) {
   EXPECT_THAT(buffer.run(), ElementsAre(Pair{0, 1}, Pair{2, 3}));
 }
 
+TEST(PairBuffer, MapsEachPairOnceInBlocksOfAnySize) {
+  struct EvenDoubled final : PairMap {
+    std::size_t map(std::span<Pair> pairs) const override {
+      std::size_t count = 0;
+      for (const Pair pair : pairs) {
+        pairs[count] = {2 * pair.a, 2 * pair.b};
+        count += pair.a % 2 == 0 ? 1 : 0;
+      }
+      return count;
+    }
+  };
+  const EvenDoubled map;
+  PairBuffer buffer;
+  buffer.setMap(&map);
+  for (const std::size_t step : {1U, 7U, 1024U, 5000U}) {
+    SCOPED_TRACE(step);
+    buffer.clear();
+    for (std::uint32_t i = 0; i < 12'000;) {
+      Pair* const room = buffer.room(step);
+      for (std::size_t k = 0; k < step; ++k, ++i) room[k] = {i, i + 1};
+      buffer.advance(step);
+    }
+    buffer.flush();
+    buffer.flush();
+    ASSERT_GE(buffer.size(), 6'000U);
+    for (std::uint32_t i = 0; i < buffer.size(); ++i) {
+      ASSERT_EQ(buffer.run()[i], (Pair{4 * i, 4 * i + 2}));
+    }
+  }
+}
+
 TEST(BoxArrays, TransposesAndPadsForEverySize) {
   BoxArrays arrays;
   for (const std::size_t n : {0U, 1U, 15U, 16U, 17U, 100U, 3U}) {

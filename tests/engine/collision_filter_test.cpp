@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <vector>
 
 namespace broadmark {
 namespace {
@@ -44,6 +45,35 @@ TEST(CollisionFilter, GoesByLayersWorldsAndTags) {
   EXPECT_FALSE(filter.wanted(3, 4)) << "a tag in common";
   EXPECT_TRUE(filter.wanted(2, 4)) << "to have no tag is not to share one";
   for (std::uint32_t body = 0; body < 5; ++body) EXPECT_EQ(filter.groupsOf(body), bodies[body]);
+}
+
+TEST(CollisionFilter, RetainsWantedPairsByEveryCombinationOfCriteria) {
+  std::vector<Pair> all = {{9, 9}, {70, 3}};  // invalid: they stay
+  for (std::uint32_t a = 0; a < 60; ++a) {
+    for (std::uint32_t b = a + 1; b < 60; ++b) all.push_back({a, b});
+  }
+  for (unsigned criteria = 0; criteria < 8; ++criteria) {
+    SCOPED_TRACE(criteria);
+    std::vector<BodyGroups> bodies(60);
+    for (std::uint32_t body = 0; body < bodies.size(); ++body) {
+      BodyGroups& own = bodies[body];
+      if ((criteria & 1) != 0) own.layer = static_cast<std::uint8_t>(body % 3);
+      if ((criteria & 2) != 0) own.world = body % 2;
+      if ((criteria & 4) == 0) continue;
+      // Equal tags at each combination of places, missing ones anywhere.
+      own.tags[body % 3] = body / 7;
+      if (body % 5 == 0) own.tags[(body + 1) % 3] = body % 4;
+    }
+    for (const LayerMatrix& matrix : {LayerMatrix().set(0, 0).set(1, 2), LayerMatrix().set(1, 1)}) {
+      const CollisionFilter filter(bodies, matrix);
+      std::vector<Pair> wanted = all;
+      std::erase_if(wanted,
+                    [&](Pair pair) { return pair.a < pair.b && !filter.wanted(pair.a, pair.b); });
+      std::vector<Pair> retained = all;
+      retained.resize(filter.retainWanted(retained));
+      EXPECT_EQ(retained, wanted);
+    }
+  }
 }
 
 TEST(CollisionFilter, OfSomeBodiesIsAsThatOfAll) {

@@ -24,7 +24,7 @@ namespace broadmark {
 namespace {
 
 /// Wraps an algorithm that accepts a varying number of bodies.
-class CompactingAdapter final : public Adapter {
+class CompactingAdapter final : public Adapter, private PairMap {
  public:
   explicit CompactingAdapter(std::unique_ptr<BroadPhase> algorithm)
       : Adapter(std::move(algorithm)) {}
@@ -57,6 +57,7 @@ class CompactingAdapter final : public Adapter {
     compacted.filter = {};
     compacted.filter_changes = false;
     compacted.world = worlds_->world();
+    pairs_.attach(*algorithm_, *this);
     algorithm_->initialize(compacted, {first.index, boxes_, changed_}, execution);
   }
 
@@ -72,8 +73,7 @@ class CompactingAdapter final : public Adapter {
   }
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
-    pairs_.map(*team_, algorithm_->overlaps(), bodies_,
-               [this](Pair indices, Pair bodies) { return isWanted(indices, bodies); });
+    pairs_.collect(*team_);
   }
   [[nodiscard]] PairRuns overlaps() const override { return pairs_.runs(); }
   void drawStructure(DebugDraw& draw) const override {
@@ -237,11 +237,18 @@ class CompactingAdapter final : public Adapter {
     if (worlds_->translates()) true_boxes_.pop_back();
   }
 
-  /// Tests the true boxes: rounding of translated ones can create an overlap.
-  [[nodiscard]] bool isWanted(Pair indices, Pair bodies) const {
-    if (!filter_.wanted(bodies.a, bodies.b)) return false;
-    return !worlds_->translates() || broadmark::overlaps(enlarged(true_boxes_[indices.a], margin_),
-                                                         enlarged(true_boxes_[indices.b], margin_));
+  [[nodiscard]] std::size_t map(std::span<Pair> pairs) const override {
+    const std::size_t mapped =
+        worlds_->translates()
+            ? mapInPlace(pairs, bodies_, [this](Pair indices) { return trueBoxesOverlap(indices); })
+            : mapInPlace(pairs, bodies_, [](Pair) { return true; });
+    return filter_.retainWanted(pairs.first(mapped));
+  }
+
+  /// Rounding of translated boxes can create an overlap.
+  [[nodiscard]] bool trueBoxesOverlap(Pair indices) const {
+    return broadmark::overlaps(enlarged(true_boxes_[indices.a], margin_),
+                               enlarged(true_boxes_[indices.b], margin_));
   }
 
   ThreadTeam* team_ = nullptr;

@@ -19,13 +19,12 @@
 #include <span>
 #include <utility>
 
+#include "adapters/mapped_pairs.h"
 #include "adapters/remapping_debug_draw.h"
 #include "broadmark/adapters.h"
 
 namespace broadmark {
 namespace {
-
-constexpr std::uint32_t kNoBody = std::numeric_limits<std::uint32_t>::max();
 
 /// The scene as one world's instance sees it.
 SceneInfo sceneOf(const SceneInfo& all, std::span<const std::uint32_t> bodies) {

@@ -32,7 +32,7 @@ SceneInfo sceneWithImages(SceneInfo scene, std::size_t capacity) {
   return scene;
 }
 
-class PeriodicAdapter final : public Adapter {
+class PeriodicAdapter final : public Adapter, private PairMap {
  public:
   PeriodicAdapter(const SceneInfo& scene, InstanceMaker make)
       : Adapter(make(sceneWithImages(scene, 0))), make_(std::move(make)) {}
@@ -55,9 +55,7 @@ class PeriodicAdapter final : public Adapter {
     }
     addSlots(std::max<std::size_t>(2 * images, kMinSlots));
     for (std::uint32_t body = 0; body < bodies_; ++body) update(body, first.boxes[body]);
-    changed_.clear();
-    algorithm_->initialize(sceneWithImages(scene_, slots()), {first.index, boxes_, changed_},
-                           execution);
+    startAlgorithm(first.index);
     has_grown_ = false;
   }
 
@@ -69,9 +67,7 @@ class PeriodicAdapter final : public Adapter {
     freed_.clear();
     if (std::exchange(has_grown_, false)) {
       algorithm_ = make_(sceneWithImages(scene_, 0));
-      changed_.clear();
-      algorithm_->initialize(sceneWithImages(scene_, slots()), {frame.index, boxes_, changed_},
-                             *execution_);
+      startAlgorithm(frame.index);
     }
     std::ranges::sort(changed_);
     algorithm_->updateObjects({frame.index, boxes_, changed_});
@@ -79,8 +75,7 @@ class PeriodicAdapter final : public Adapter {
 
   void searchOverlaps() override {
     algorithm_->searchOverlaps();
-    pairs_.map(execution_->team(), algorithm_->overlaps(), owners_,
-               [this](Pair images, Pair bodies) { return isWanted(images, bodies); });
+    pairs_.collect(execution_->team());
   }
   [[nodiscard]] PairRuns overlaps() const override { return pairs_.runs(); }
 
@@ -94,8 +89,21 @@ class PeriodicAdapter final : public Adapter {
   }
 
  private:
-  static constexpr std::uint32_t kNone = MappedPairs::kNoBody;
+  static constexpr std::uint32_t kNone = kNoBody;
   static constexpr std::size_t kMinSlots = 64;
+
+  void startAlgorithm(std::uint32_t frame) {
+    changed_.clear();
+    pairs_.attach(*algorithm_, *this);
+    algorithm_->initialize(sceneWithImages(scene_, slots()), {frame, boxes_, changed_},
+                           *execution_);
+  }
+
+  [[nodiscard]] std::size_t map(std::span<Pair> pairs) const override {
+    const std::size_t mapped =
+        mapInPlace(pairs, owners_, [this](Pair images) { return remains(images); });
+    return filter_.retainWanted(pairs.first(mapped));
+  }
 
   [[nodiscard]] std::size_t slots() const { return boxes_.size() - bodies_; }
 
@@ -150,11 +158,11 @@ class PeriodicAdapter final : public Adapter {
     }
   }
 
-  [[nodiscard]] bool isWanted(Pair images, Pair bodies) const {
-    if (bodies.b == kNone) return true;  // an unused slot: stays invalid
+  /// Of all pairs of images of the same two bodies, one remains.
+  [[nodiscard]] bool remains(Pair images) const {
     // A pair within the margin could be one that overlaps in another way, too.
     if (margin_ > 0 && !broadmark::overlaps(boxes_[images.a], boxes_[images.b])) return false;
-    return (images.b < bodies_ || isFirstOfImages(images)) && filter_.wanted(bodies.a, bodies.b);
+    return images.b < bodies_ || isFirstOfImages(images);
   }
 
   /// Whether, along each axis, the bodies overlap in no other way that comes first: neither of them

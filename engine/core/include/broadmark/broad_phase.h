@@ -66,6 +66,10 @@ class BroadPhase : public Parametrised {
   /// algorithm; valid until the next updateObjects.
   [[nodiscard]] virtual PairRuns overlaps() const = 0;
 
+  /// Called before initialize() by an adapter: asks that the answer be mapped as it is found.
+  /// Returns whether it will be; if not, it is mapped after the search.
+  virtual bool mapPairs(const PairMap&) { return false; }
+
   /// Called before initialize(), only if traits.events: the answer will be events().
   virtual void reportEvents() {}
   /// The events of this frame, in any order; after initialize() a begin event for each pair of the
@@ -107,6 +111,10 @@ class PairBroadPhase : public BroadPhase {
   void searchOverlaps() final;
   void searchQueries(const QueryBatch&) final;
   [[nodiscard]] PairRuns overlaps() const final { return runs_; }
+  bool mapPairs(const PairMap& map) final {
+    map_ = &map;
+    return true;
+  }
 
  protected:
   /// Adds every pair of the frame to the buffer of any worker.
@@ -120,7 +128,10 @@ class PairBroadPhase : public BroadPhase {
   PairBuffer& pairs(int worker = 0) { return buffers_[static_cast<std::size_t>(worker)]; }
 
  private:
+  void collectRuns();
+
   ExecutionContext* execution_ = nullptr;
+  const PairMap* map_ = nullptr;
   std::vector<PairBuffer> buffers_;
   std::vector<PairRun> runs_;
 };

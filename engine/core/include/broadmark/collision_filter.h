@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
 #include <vector>
+
+#include "broadmark/pair.h"
 
 namespace broadmark {
 
@@ -58,6 +61,9 @@ class CollisionFilter {
   [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
     return data_ == nullptr || data_->wanted(a, b);
   }
+  /// Keeps the wanted pairs and the invalid ones (a >= b), in order, at the front, and returns
+  /// their number. A third of the time of wanted() for each pair.
+  std::size_t retainWanted(std::span<Pair> pairs) const;
   /// Sufficient condition for all pairs to be wanted.
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
 
@@ -87,22 +93,40 @@ class CollisionFilter {
  private:
   friend class LiveFilter;
 
+  /// A body's tags; last, kNoTag.
+  using TagVector [[gnu::vector_size(16)]] = std::uint32_t;
+  static TagVector toVector(const BodyGroups::Tags& tags) {
+    const TagVector vector = {tags[0], tags[1], tags[2], BodyGroups::kNoTag};
+    return vector;
+  }
+
   struct Data {
     bool changes = false;
     LayerMatrix matrix;
     std::vector<std::uint8_t> layers;
     std::vector<std::uint32_t> worlds;
     std::vector<BodyGroups::Tags> tags;
+    std::vector<TagVector> tag_vectors;  ///< the same
 
     [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
       const std::size_t layer_a = layers.empty() ? 0 : layers[a];
       const std::size_t layer_b = layers.empty() ? 0 : layers[b];
       if (!matrix.collide(layer_a, layer_b)) return false;
       if (!worlds.empty() && worlds[a] != worlds[b]) return false;
-      return tags.empty() || !shareTag(tags[a], tags[b]);
+      return tag_vectors.empty() || !shareTag(tag_vectors[a], tag_vectors[b]);
     }
-    static bool shareTag(const BodyGroups::Tags& a, const BodyGroups::Tags& b);
+    template <bool kLayers, bool kWorlds, bool kTags>
+    std::size_t retainWanted(std::span<Pair> pairs) const;
   };
+
+  /// Compares each tag with each, without branches.
+  static bool shareTag(TagVector a, TagVector b) {
+    const TagVector b1 = __builtin_shufflevector(b, b, 1, 2, 0, 3);
+    const TagVector b2 = __builtin_shufflevector(b, b, 2, 0, 1, 3);
+    const auto equal = ((a == b) | (a == b1) | (a == b2)) & (a != BodyGroups::kNoTag);
+    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(equal);
+    return (halves[0] | halves[1]) != 0;
+  }
 
   std::shared_ptr<const Data> data_;  ///< null: every pair is wanted
 };

@@ -61,13 +61,41 @@ inline std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pai
   return counts;
 }
 
+/// Replaces pairs by others, or drops them. Called by several workers at the same time.
+class PairMap {
+ public:
+  virtual ~PairMap() = default;
+  /// Writes the remaining pairs to the front, and returns their number.
+  [[nodiscard]] virtual std::size_t map(std::span<Pair> pairs) const = 0;
+};
+
 /// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it provides
 /// uninitialised space, so that SIMD kernels can write first and count afterwards.
+///
+/// With a map, pairs are mapped in blocks, soon after they have been added: while they are in the
+/// nearest cache, and before they take memory.
 ///
 /// Aligned to a cache line against false sharing: workers fill adjacent buffers.
 class alignas(64) PairBuffer {
  public:
-  void clear() { size_ = 0; }
+  static constexpr std::size_t kBlock = 1024;  ///< pairs mapped at a time
+
+  void clear() {
+    size_ = 0;
+    mapped_ = 0;
+    end_ = map_ == nullptr ? pairs_.size() : 0;
+  }
+  /// Maps all pairs added from now on; null: none. Borrowed. The buffer must be empty.
+  void setMap(const PairMap* map) {
+    map_ = map;
+    clear();
+  }
+  /// Maps those pairs that are not mapped yet. size() and run() are final only then.
+  void flush() {
+    if (map_ == nullptr) return;
+    size_ = mapped_ + map_->map({pairs_.data() + mapped_, size_ - mapped_});
+    mapped_ = size_;
+  }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] PairRun run() const { return {pairs_.data(), size_}; }
 
@@ -86,7 +114,7 @@ class alignas(64) PairBuffer {
   /// Space for `count` more pairs behind the present ones; valid until the next call. Written pairs
   /// count only after advance().
   Pair* room(std::size_t count) {
-    if (size_ + count > pairs_.size()) grow(size_ + count);
+    if (size_ + count > end_) makeRoom(count);
     return pairs_.data() + size_;
   }
   void advance(std::size_t count) { size_ += count; }
@@ -105,13 +133,21 @@ class alignas(64) PairBuffer {
   }
 
  private:
-  void grow(std::size_t size) {
+  void makeRoom(std::size_t count) {
+    flush();
     const std::size_t capacity = pairs_.size();
-    pairs_.resize(std::max<std::size_t>({size, capacity + capacity / 2, 1024}));
+    if (size_ + count > capacity) {
+      pairs_.resize(std::max({size_ + count, capacity + capacity / 2, kBlock}));
+    }
+    end_ =
+        map_ == nullptr ? pairs_.size() : std::min(pairs_.size(), size_ + std::max(count, kBlock));
   }
 
   LargeArray<Pair> pairs_;  ///< its size is the capacity
   std::size_t size_ = 0;
+  std::size_t end_ = 0;  ///< of the room until makeRoom() is called
+  const PairMap* map_ = nullptr;
+  std::size_t mapped_ = 0;  ///< the pairs before this one are mapped
 };
 
 }  // namespace broadmark
