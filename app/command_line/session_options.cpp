@@ -157,7 +157,7 @@ void SessionParser::addRun() {
       kInspector);
   tag(addNamed(app_, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
-      kInspector);
+      kNone);
   for (const CLI::Option* option : addHosts(app_, options_.hosts)) tag(option, kNone);
 }
 

@@ -69,7 +69,8 @@ void Inspector::drawSpeed() {
   const float left = ImGui::GetCursorPosX();
   ImGui::AlignTextToFramePadding();
   const auto achieved = playback.achievedRate();
-  ui_.faint(achieved ? fmt::format("{:.0f}/s", *achieved) : "");
+  const int digits = achieved.value_or(0) < 1 ? 2 : achieved.value_or(0) < 10 ? 1 : 0;
+  ui_.faint(achieved ? fmt::format("{:.{}f}/s", *achieved, digits) : "");
   ui_.note("achieved");
   ui_.tooltip("Frames shown in the last second");
   ImGui::SameLine(left + 40 * ui_.scale);
@@ -135,9 +136,11 @@ void Inspector::drawStatus(const RunProgress& progress) {
   }
   const Message& message = session_.notices.status;
   if (message.text.empty()) return;
-  const std::string shown = message.text.substr(0, message.text.find('\n'));
-  const float x = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(shown.c_str()).x;
-  ImGui::SameLine(std::max(x, ImGui::GetCursorPosX() + 20 * ui_.scale));
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  const float left = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x + 20 * ui_.scale;
+  const std::string shown =
+      fittingText(message.text.substr(0, message.text.find('\n')), std::max(right - left, 0.0F));
+  ImGui::SameLine(std::max(left, right - ImGui::CalcTextSize(shown.c_str()).x));
   ui_.coloured(message.severity == Severity::error     ? ui_.theme.bad
                : message.severity == Severity::warning ? ui_.theme.warning
                                                        : ui_.theme.faint,

@@ -224,6 +224,7 @@ class AuthorPanel final : public Panel {
     using Alignment = SceneEditor::Alignment;
     constexpr std::pair<Alignment, const char*> kAlignments[] = {
         {Alignment::low, "low"}, {Alignment::middle, "middle"}, {Alignment::high, "high"}};
+    ui.heading("Align");
     const auto scope = ui.scope("align");
     ButtonRow row(ui, 3);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -104,8 +104,7 @@ class DuelPanel final : public Panel {
 
   void drawSide(const DuelResult& result, std::size_t side, const DuelRank* rank) {
     const std::vector<double>& seconds = result.sides[side].seconds;
-    const double ratio =
-        rank != nullptr ? rank->ratio.value : quantile(result.ratios(side, 0), 0.5);
+    const Estimate ratio = rank != nullptr ? rank->ratio : result.ratio(side, 0);
     ImGui::TableNextRow();
     ui.cell(rank == nullptr ? "" : fmt::format("{}.", rank->rank));
     ImGui::TableNextColumn();
@@ -117,8 +116,8 @@ class DuelPanel final : public Panel {
     ImGui::PopID();
     ui.cell(durationText(quantile(seconds, 0.5)));
     ui.cell(durationText(quantile(seconds, 0)));
-    ui.cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
-    ui.cell(side == 0 || rank == nullptr ? "" : intervalText(rank->ratio.ci95, 3));
+    ui.cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio.value));
+    ui.cell(side == 0 ? "" : intervalText(ratio.ci95, 3));
   }
 
   /// Draws the histogram of the rounds' ratios, with a line at equal times.

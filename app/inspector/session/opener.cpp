@@ -48,6 +48,7 @@ void Session::openCase(OpenedResults::Row& row) {
 }
 
 void Session::open(Plan plan) {
+  mismatches.check = plan.request.policy.check != CheckMode::off;
   for (const Case& test_case : plan.cases) tracks.add(test_case);
   if (auto& unchosen = plan.unchosen_case) {
     showResults(unchosen->file, std::move(unchosen->results));

@@ -20,7 +20,7 @@ constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
 constexpr float kZoomPerTurn = 0.86F;
 constexpr float kFlySpeed = 1.2F;   // distances to the target per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
-constexpr float kSurroundings = 2;  // size of the framed area, in sizes of the focused bodies
+constexpr float kSurroundings = 2;  // size of the framed area around a body, in its sizes
 
 /// Adds the groups of the bodies, unless Alt is down.
 BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
@@ -69,7 +69,11 @@ void View::startRequestedFlight(Session& session) {
   }
   const Aabb bounds = content_.boundsOf(bodies);
   if (isEmpty(bounds)) return;  // all bodies are absent
-  const float margin = (kSurroundings - 1) * static_cast<float>(longestEdge(bounds)) / 2;
+  double longest = 0;
+  for (const std::uint32_t body : bodies) {
+    longest = std::max(longest, longestEdge((*content_.snapshot()->boxes)[body]));
+  }
+  const float margin = (kSurroundings - 1) * static_cast<float>(longest) / 2;
   flyTo(focusedOn(camera_, space_.toView(enlarged(bounds, margin)), aspect()));
 }
 
