@@ -7,6 +7,7 @@
 
 #include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
+#include "parts.h"
 #include "support/changing_worlds.h"
 #include "support/places.h"
 #include "support/wandering_boxes.h"
@@ -99,6 +100,10 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
     }
     EXPECT_EQ(shell(lines.back() + " --json shown.json"), 1) << readFile(file("shell.out"));
     EXPECT_EQ(caseOf(algorithm, "shown.json").at("status"), "mismatch");
+
+    if (!parts::kInspector.included) continue;
+    writeFile(file("script.txt"), "wait idle\nexpect check = yes\nexpect algorithms = 1\n");
+    EXPECT_EQ(shell(lines.back() + " --ui --script script.txt"), 0) << readFile(file("shell.out"));
   }
 }
 
