@@ -1,4 +1,12 @@
 // Axis-aligned bounding boxes, and the definition of overlap.
+//
+// Example:
+//
+//   const Aabb a{{0, 0, 0}, {1, 1, 1}};
+//   const Aabb b{{1, 0, 0}, {2, 1, 1}};
+//   const bool touching = overlaps(a, b);                // true: touching counts
+//   const Aabb both = merged(a, b);                      // (0, 0, 0) to (2, 1, 1)
+//   const bool absent = overlaps(kEmptyBox, kEmptyBox);  // false: no body is there
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // An algorithm's description, from which help, tables, command line and tests are derived.
+//
+// Example:
+//
+//   class MySweep final : public BoxBroadPhase {
+//     void findPairs() override {}
+//   };
+//   const Algorithm mine = {.id = "my-sweep",
+//                           .family = "MySweep",
+//                           .summary = "sweep along the widest axis",
+//                           .traits = {.changing_worlds = ChangingWorlds::compacted},
+//                           .create = [] { return std::make_unique<MySweep>(); }};
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,16 @@
 // The central interface: a broad-phase algorithm, and helper base classes for common cases.
+//
+// Example:
+//
+//   class AllPairs final : public BoxBroadPhase {  // which copies the boxes
+//     void findPairs() override {
+//       for (std::uint32_t a = 0; a < boxes().size(); ++a) {
+//         for (std::uint32_t b = a + 1; b < boxes().size(); ++b) {
+//           if (broadmark::overlaps(boxes()[a], boxes()[b])) pairs().add(a, b);
+//         }
+//       }
+//     }
+//   };
 #pragma once
 
 #include <cstdint>

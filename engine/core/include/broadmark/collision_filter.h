@@ -1,4 +1,12 @@
 // Collision filters: the wanted pairs of bodies, independent of positions.
+//
+// Example:
+//
+//   std::vector<BodyGroups> bodies(3);
+//   bodies[2].layer = 1;  // a sensor, say: bodies collide with it, sensors do not with each other
+//   const LayerMatrix collide = LayerMatrix().set(0, 0).set(0, 1);
+//   const CollisionFilter filter(bodies, collide);
+//   const bool wanted = filter.wanted(0, 2);
 #pragma once
 
 #include <array>

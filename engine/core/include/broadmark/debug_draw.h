@@ -1,4 +1,12 @@
 // Debug drawing of an algorithm's structure: grid cells, tree nodes, split planes, sort axes.
+//
+// Example:
+//
+//   // In an algorithm, whose drawing the inspector shows:
+//   const auto draw_structure = [](DebugDraw& draw, const Aabb& world, std::uint32_t bodies) {
+//     draw.cell(world, 0, bodies);
+//     draw.line({world.min[0], 0, 0}, {world.max[0], 0, 0}, StructureRole::split);
+//   };
 #pragma once
 
 #include <array>

@@ -1,4 +1,12 @@
 // How a case is executed: which instruction set, how many threads, which compute device.
+//
+// Example:
+//
+//   ExecutionContext execution(4, bestIsa());  // the caller and three threads
+//   std::vector<double> sums(static_cast<std::size_t>(execution.threads()));
+//   execution.team().run(1'000'000, [&](int worker, Range items) {
+//     sums[static_cast<std::size_t>(worker)] = static_cast<double>(items.end - items.begin);
+//   });
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,16 @@
 // The input of an algorithm: a scene, frame after frame.
+//
+// Example:
+//
+//   // All frames of a recording or live simulation, one after another.
+//   const auto visit = [](FrameSource& source) {
+//     const SceneInfo& scene = source.scene();
+//     Frame frame = source.rewind();  // the initial pose, frame 0
+//     while (const std::optional<Frame> next = source.next()) {
+//       frame = *next;  // frame.boxes[body], until the next call
+//     }
+//     return frame.index == scene.frames;
+//   };
 #pragma once
 
 #include <cstddef>

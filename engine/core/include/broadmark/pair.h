@@ -1,4 +1,14 @@
 // Pairs of overlapping bodies, and the buffers for an algorithm's answer.
+//
+// Example:
+//
+//   PairBuffer found;
+//   found.add(7, 3);                            // stored as (3, 7)
+//   Pair* const room = found.room(16);          // uninitialised
+//   room[0] = {1, 2};
+//   found.advance(1);                           // of 16, one was written
+//   const PairRun run = found.run();            // (3, 7), (1, 2)
+//   const std::uint64_t count = pairCount({&run, 1});
 #pragma once
 
 #include <algorithm>

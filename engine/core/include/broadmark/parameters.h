@@ -1,5 +1,19 @@
 // Typed parameters: name, default, range and documentation are declared once, where the value is
 // stored. Command line, JSON, help and user interface are derived from them.
+//
+// Example:
+//
+//   class Grid final : public Parametrised {
+//    public:
+//     void visitParameters(const ParameterVisitor& visit) override {
+//       visit({"cell_size", "edge length of a cell, in world units", &cell_size_, 0.1, 1e6});
+//     }
+//
+//    private:
+//     double cell_size_ = 1;  // the default
+//   };
+//   Grid grid;
+//   setParameters(grid, {{"cell_size", "2.5"}});
 #pragma once
 
 #include <cstdint>

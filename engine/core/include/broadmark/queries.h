@@ -1,5 +1,12 @@
 // Queries: which bodies' boxes overlap a box, are crossed by a ray, are touched by a moving box, or
 // are nearest to a point.
+//
+// Example:
+//
+//   const std::vector<Aabb> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{4, 0, 0}, {5, 1, 1}}};
+//   const Query ray{.box = {{-1, 0.5, 0.5}, {-1, 0.5, 0.5}}, .motion = {10, 0, 0}};
+//   const bool is_hit = hits(AnswerKind::rays, ray, boxes[1]);
+//   const HitBounds all = findHits({AnswerKind::rays, {&ray, 1}}, boxes);  // (0, 0), (0, 1)
 #pragma once
 
 #include <array>

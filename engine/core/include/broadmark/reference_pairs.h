@@ -1,4 +1,11 @@
 // Reference pairs for arbitrary boxes, and digests of pairs.
+//
+// Example:
+//
+//   const std::vector<Aabb> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
+//   const std::vector<Pair> correct = sweptPairs(boxes);  // (0, 1)
+//   const PairRun run = correct;
+//   const PairDigest digest_of_all = digest({&run, 1});  // compares answers in any order
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,14 @@
 // The interface of a physics engine. One implementation per file, listed in CMakeLists.txt.
+//
+// Example:
+//
+//   const auto drop = [](scenes::PhysicsEngine& engine, const scenes::Shape& shape) {
+//     engine.setGravity({0, 0, -9.81F});
+//     engine.addWall({.normal = {0, 0, 1}, .offset = 0});
+//     const scenes::PhysicsBody& body = engine.addBody({.shape = shape, .mass = 2});
+//     while (!engine.allAsleep()) engine.step();
+//     return body.pose();
+//   };
 #pragma once
 
 #include <cstdint>

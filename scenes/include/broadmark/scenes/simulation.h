@@ -1,5 +1,13 @@
 // The public interface of scenes: parameters in, frames out. Also their parameter files, and baking
 // into recordings.
+//
+// Example:
+//
+//   const std::unique_ptr<Simulation> simulation = makeSimulation("gravity", "bullet");
+//   setParameters(*simulation, {{"objects", "2000"}, {"frames", "100"}, {"seed", "7"}});
+//   Frame frame = simulation->rewind();
+//   while (const std::optional<Frame> next = simulation->next()) frame = *next;
+//   bake(*simulation, {"gravity.aabbs"});  // the same frames again, to a file
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,12 @@
 // Correct answers, and the differences of an algorithm's answers from them.
+//
+// Example:
+//
+//   const auto missed = [](const Frame& frame, PairRuns answer) {
+//     Oracle oracle;
+//     const FrameDifference difference = findDifference(answer, oracle.pairs(frame.boxes), frame);
+//     return difference.missed_count;  // and missed_pairs, false_pairs, invalid_pairs
+//   };
 #pragma once
 
 #include <cstddef>

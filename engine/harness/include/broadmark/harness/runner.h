@@ -1,4 +1,11 @@
 // Running a case over a whole recording, and collecting its results.
+//
+// Example:
+//
+//   const auto seconds_per_frame = [](const Algorithm& algorithm, FrameSource& frames) {
+//     const CaseResult result = runCase({.algorithm = algorithm}, frames, {}, 3);
+//     return result.status == Status::ok ? result.summary().seconds_per_frame : -1;
+//   };
 #pragma once
 
 #include <cstdint>

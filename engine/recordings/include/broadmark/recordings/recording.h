@@ -5,6 +5,15 @@
 // 0, the world box, then 1 + frames sets of 32 bytes per body. In an .aabbs recording all sets are
 // boxes; for .posrot recordings see posrot.h. Absent bodies and collision filters require a
 // .broadmark recording: recording2.h.
+//
+// Example:
+//
+//   const auto copy = [](const std::filesystem::path& from, const std::filesystem::path& to) {
+//     const std::unique_ptr<Recording> source = openRecordingFile(from);
+//     RecordingWriter writer(to, source->scene(), source->origin());
+//     recordAll(*source, writer);
+//     return writer.finish();  // the hash of the new file
+//   };
 #pragma once
 
 #include <cstddef>

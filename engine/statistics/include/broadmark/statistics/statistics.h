@@ -1,4 +1,11 @@
 // Statistics of timings, as pure functions.
+//
+// Example:
+//
+//   const std::vector<double> seconds = {1e-3, 1.1e-3, 0.9e-3, 5e-3};
+//   const double median = quantile(seconds, 0.5);
+//   const std::optional<Interval> interval = confidence95(seconds);
+//   const Summary summary = summarise(std::vector<std::span<const double>>{seconds});
 #pragma once
 
 #include <cstddef>
