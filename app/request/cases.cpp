@@ -155,22 +155,18 @@ std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known) {
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
                                         const std::vector<Algorithm>& known,
                                         std::string_view option) {
-  std::vector<bool> selected(known.size());
+  std::vector<Algorithm> algorithms;
   for (const std::string& selector : selectors) {
     bool names_any = false;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      if (!selects(selector, known[i], known)) continue;
-      selected[i] = true;
+    for (const Algorithm& algorithm : known) {
+      if (!selects(selector, algorithm, known)) continue;
       names_any = true;
+      if (findAlgorithm(algorithm.id, algorithms) == nullptr) algorithms.push_back(algorithm);
     }
     if (!names_any) {
       throw InputError(
           fmt::format("{}: {}", option, unknownName("algorithm", selector, algorithmIds(known))));
     }
-  }
-  std::vector<Algorithm> algorithms;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (selected[i]) algorithms.push_back(known[i]);
   }
   return algorithms;
 }
