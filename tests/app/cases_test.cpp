@@ -117,7 +117,7 @@ TEST(SelectCases, OneForEachValueOfAParameter) {
 
 TEST(SelectCases, AParameterMayBeOfOneAlgorithmOnly) {
   const CaseOptions options{
-      .algorithms = {"kd", "kd-mt", "dbvt-d"}, .threads = {1}, .isas = {Isa::scalar}};
+      .algorithms = {"dbvt-d", "kd", "kd-mt"}, .threads = {1}, .isas = {Isa::scalar}};
   const auto names = [&](const ParameterValues& given) { return namesOf(casesOf(options, given)); };
   EXPECT_THAT(names({{"kd:margin", "0.5"}}),
               ElementsAre("dbvt-d", "kd/scalar/margin=0.5", "kd-mt/scalar/t1"));
