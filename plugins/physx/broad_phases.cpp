@@ -12,9 +12,7 @@
 // 65,534 bodies (region_loads.h). The outer regions are unbounded, because bodies outside of all
 // regions would not collide. A thread team has a dispatcher with the same number of threads.
 //
-// PhysX rounds bounds to integers, so its pairs are candidates. Each frame tests the candidates
-// with moved bodies, and the answer is exact: a pair begins when PhysX creates it or when the boxes
-// of a candidate start to overlap, and it ends in the same way.
+// PhysX rounds bounds to integers, so its pairs are candidates (candidate_pairs.h).
 //
 // Library: PhysX 5, NVIDIA.
 
@@ -26,8 +24,8 @@
 #include <vector>
 
 #include "broadmark/non_colliding_layers.h"
-#include "broadmark/pair_set.h"
 #include "broadmark/plugin.h"
+#include "candidate_pairs.h"
 #include "physx/library.h"
 #include "physx/region_loads.h"
 
@@ -112,7 +110,6 @@ class PhysX final : public BroadPhase {
     groups_.push_back(0);
     is_present_.assign(count, 0);
     has_moved_.assign(count, 0);
-    ended_by_worker_ = std::vector<PairBuffer>(static_cast<std::size_t>(team_->size()));
     if (physx::PxBroadPhaseRegions* regions = broad_phase_->getRegions()) {
       loads_.emplace(scene.world, kDivided, regionsFor(first.boxes.size()), first.boxes.size());
       addRegions(*regions);
@@ -132,10 +129,7 @@ class PhysX final : public BroadPhase {
     for (const std::uint32_t body : *frame.changed) applyBox(body, frame.boxes[body]);
   }
 
-  void cleanCache() override {
-    began_.clear();
-    ended_.clear();
-  }
+  void cleanCache() override { pairs_.clearEvents(); }
 
   void updateStructures() override {
     if (created_.empty() && updated_.empty() && removed_.empty()) return;
@@ -152,44 +146,38 @@ class PhysX final : public BroadPhase {
     broad_phase_->fetchResults(results);
     PhysXErrors::instance().check();
     if (loads_) loads_->endFrame();
-    if (!removed_.empty()) dropRemoved();
+    // PhysX does not report all deleted pairs of removed bodies.
+    if (!removed_.empty()) pairs_.dropIf([this](Pair pair) { return !arePresent(pair); });
     for (PxU32 i = 0; i < results.mNbDeletedPairs; ++i) {
       const Pair pair = pairOf(results.mDeletedPairs[i]);
-      if (arePresent(pair) && isWanted(pair)) drop(pair);
+      if (arePresent(pair) && isWanted(pair)) pairs_.drop(pair);
     }
     for (PxU32 i = 0; i < results.mNbCreatedPairs; ++i) {
       const Pair pair = pairOf(results.mCreatedPairs[i]);
-      if (isWanted(pair)) separated_.insert(PairRun(&pair, 1));
+      if (isWanted(pair)) pairs_.insert(PairRun(&pair, 1));
     }
   }
 
   void searchOverlaps() override {
     if (!created_.empty() || !updated_.empty()) {
-      endSeparated();
-      beginOverlapping();
+      pairs_.update(
+          *team_, [this](Pair pair) { return hasMoved(pair); },
+          [this](Pair pair) { return overlap(pair); });
     }
-    runs_ = {overlapping_.run(), began_.run(), ended_.run()};
+    pairs_.endFrame();
   }
 
-  [[nodiscard]] PairRuns overlaps() const override { return {&runs_.overlapping, 1}; }
-  [[nodiscard]] PairEvents events() const override {
-    return {{&runs_.began, 1}, {&runs_.ended, 1}};
-  }
+  [[nodiscard]] PairRuns overlaps() const override { return pairs_.overlaps(); }
+  [[nodiscard]] PairEvents events() const override { return pairs_.events(); }
 
   void visitCounters(const CounterVisitor& visit) const override {
     visit("moves", updated_.size());
-    visit("pairs begun", began_.size());
-    visit("pairs ended", ended_.size());
-    visit("candidates", overlapping_.run().size() + separated_.run().size());
+    pairs_.visitCounters(visit);
   }
 
   [[nodiscard]] std::string validate() const override {
-    const auto overlapping = [this](Pair pair) { return arePresent(pair) && overlap(pair); };
-    const auto apart = [this](Pair pair) { return arePresent(pair) && !overlap(pair); };
-    if (!std::ranges::all_of(overlapping_.run(), overlapping))
-      return "a reported pair does not overlap";
-    if (!std::ranges::all_of(separated_.run(), apart)) return "an overlapping pair is not reported";
-    return {};
+    return pairs_.validate([this](Pair pair) { return arePresent(pair); },
+                           [this](Pair pair) { return overlap(pair); });
   }
 
  private:
@@ -227,58 +215,6 @@ class PhysX final : public BroadPhase {
     if (!is_present && was_present) loads_->remove(body);
   }
 
-  /// Removes a candidate.
-  void drop(Pair pair) {
-    if (overlapping_.contains(pair)) {
-      overlapping_.erase(PairRun(&pair, 1));
-      ended_.add(pair.a, pair.b);
-    } else {
-      separated_.erase(PairRun(&pair, 1));
-    }
-  }
-
-  /// PhysX does not report all deleted pairs of removed bodies.
-  void dropRemoved() {
-    pairs_of_removed_.clear();
-    for (const PairRun candidates : {overlapping_.run(), separated_.run()}) {
-      for (const Pair pair : candidates) {
-        if (!arePresent(pair)) pairs_of_removed_.push_back(pair);
-      }
-    }
-    for (const Pair pair : pairs_of_removed_) drop(pair);
-  }
-
-  /// Ends pairs that no longer overlap; they remain candidates.
-  void endSeparated() {
-    const PairRun pairs = overlapping_.run();
-    team_->run(pairs.size(), [&](int worker, Range part) {
-      PairBuffer& ended = ended_by_worker_[static_cast<std::size_t>(worker)];
-      ended.clear();
-      for (const Pair pair : pairs.subspan(part.begin, part.size())) {
-        if (hasMoved(pair) && !overlap(pair)) ended.add(pair.a, pair.b);
-      }
-    });
-    for (const PairBuffer& ended : ended_by_worker_) {
-      for (const Pair pair : ended.run()) {
-        drop(pair);
-        separated_.insert(PairRun(&pair, 1));
-      }
-    }
-  }
-
-  /// Begins candidates that now overlap.
-  void beginOverlapping() {
-    overlapping_candidates_.clear();
-    for (const Pair pair : separated_.run()) {
-      if (hasMoved(pair) && overlap(pair)) overlapping_candidates_.push_back(pair);
-    }
-    for (const Pair pair : overlapping_candidates_) {
-      separated_.erase(PairRun(&pair, 1));
-      overlapping_.insert(PairRun(&pair, 1));
-      began_.add(pair.a, pair.b);
-    }
-  }
-
   void addRegions(physx::PxBroadPhaseRegions& regions) const {
     for (int i = 0; i < loads_->count(); ++i) {
       for (int j = 0; j < loads_->count(); ++j) {
@@ -306,21 +242,11 @@ class PhysX final : public BroadPhase {
   std::vector<float> distances_;
   std::vector<std::uint8_t> is_present_;
   std::vector<std::uint8_t> has_moved_;  ///< moved or appeared in this frame
-  // PhysX's pairs that pass the filter.
-  PairSet overlapping_;
-  PairSet separated_;  ///< candidates that do not overlap
+  CandidatePairs pairs_;                 ///< that pass the filter
   // Of the current frame.
   std::vector<PxU32> created_;
   std::vector<PxU32> updated_;
   std::vector<PxU32> removed_;
-  std::vector<Pair> pairs_of_removed_;
-  std::vector<Pair> overlapping_candidates_;
-  std::vector<PairBuffer> ended_by_worker_;  ///< by worker
-  PairBuffer began_;
-  PairBuffer ended_;
-  struct {
-    PairRun overlapping, began, ended;
-  } runs_;
 };
 
 }  // namespace
