@@ -23,3 +23,4 @@ endfunction()
 broadmark_sdk(physx PhysX PhysX::PhysX "PhysX 5.6")
 broadmark_sdk(jolt Jolt Jolt::Jolt "Jolt Physics 5.5")
 set(jolt_options -fno-rtti)  # as Jolt's default; enabled if Jolt has RTTI
+broadmark_sdk(box3d box3d box3d::box3d "Box3D 0.1")
