@@ -14,6 +14,7 @@ struct ReadingOptions : Parametrised {
   bool swept = false;
   double widen = 0;
   std::string periodic;
+  Choice body_order{"given", {"given", "random", "morton"}};
   Choice format{"auto", {"auto", "csv", "xyz", "lammps", "ply", "obj", "stl", "gltf", "numpy"}};
   bool strict = false;
   Choice elements{"triangles", {"vertices", "edges", "triangles", "all"}};
@@ -37,6 +38,10 @@ struct ReadingOptions : Parametrised {
            "also report pairs across the boundaries of a periodic box: the one that the source "
            "states, or as in =0:10,0:10,- (LOW:HIGH along x, y and z; - where it is not periodic)",
            &periodic});
+    visit({"body_order",
+           "number the bodies in another order: at random, or along a Morton curve through the "
+           "initial pose",
+           &body_order});
     visit(
         {"format", "imported files: their format, instead of recognising it by content", &format});
     visit({"strict", "imported files: fail if anything in them would be left out", &strict});

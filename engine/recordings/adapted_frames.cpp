@@ -12,6 +12,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/hasher.h"
+#include "broadmark/recordings/ordered_frames.h"
 #include "broadmark/recordings/periodic_frames.h"
 #include "broadmark/recordings/swept_frames.h"
 #include "broadmark/recordings/widened_frames.h"
@@ -49,6 +50,13 @@ const std::array adapters{
                    return widened(std::move(frames), distanceOf(value));
                  }},
     FrameAdapter{"periodic", kPeriodicSuffix, periodicScene, periodicFrames},
+    FrameAdapter{"body_order", kOrderedSuffix,
+                 [](SceneInfo scene, const std::string&) { return orderedScene(std::move(scene)); },
+                 [](std::unique_ptr<IndexedFrames> frames,
+                    const std::string& value) -> std::unique_ptr<IndexedFrames> {
+                   const auto order = value == "random" ? BodyOrder::random : BodyOrder::morton;
+                   return std::make_unique<OrderedFrames>(std::move(frames), order);
+                 }},
 };
 
 /// The value of the adapter's option; null without it.

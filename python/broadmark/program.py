@@ -212,6 +212,7 @@ def run(
     swept: bool = False,
     widen: float | None = None,
     periodic: bool | str = False,
+    body_order: str | None = None,
     format: str | None = None,
     strict: bool = False,
     elements: str | None = None,

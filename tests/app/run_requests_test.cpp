@@ -60,7 +60,7 @@ TEST_F(RunRequests, KeepEveryOption) {
       {"--time-limit", "0.25", "--allow-timeout", "--check", "hash", "--hard-limit", "2.5"},
       {"--pin", "--memory-limit", "0.5", "--json", "r.json", "--csv", "r.csv", "--record", "dir"},
       {"--screenshot", "s.png", "--frame", "0", "--size", "16x9", "--gl", "egl", "--swept",
-       "--widen", "0.25", "--periodic=-1:1,-,0:2"},
+       "--widen", "0.25", "--periodic=-1:1,-,0:2", "--body-order", "morton"},
       {"--elements", "edges", "--radius", "0.5"}};
   Arguments arguments = {"--headless"};
   for (const Arguments& some : everything) {
@@ -87,6 +87,7 @@ TEST_F(RunRequests, KeepEveryOption) {
   EXPECT_TRUE(read.reading.swept);
   EXPECT_EQ(read.reading.widen, 0.25);
   EXPECT_EQ(read.reading.periodic, "-1:1,-,0:2");
+  EXPECT_EQ(read.reading.body_order.value, "morton");
   EXPECT_EQ(read.reading.radius, 0.5);
 }
 

@@ -131,6 +131,27 @@ TEST_F(Import, AnySourceCanBeWidened) {
   }
 }
 
+TEST_F(Import, BodiesAreNumberedInAnotherOrder) {
+  const auto run_with = [&](Arguments order) {
+    Arguments call = {"--headless", "fountain", "--objects",   "60",
+                      "--frames",   "30",       "--algorithm", "sap,tide,columns",
+                      "--check",    "full",     "--json",      file("o.json").string()};
+    call.insert(call.end(), order.begin(), order.end());
+    runQuietly(call);
+    return pairsOf(file("o.json"));
+  };
+  const auto pairs = run_with({});
+  for (const std::string order : {"random", "morton"}) {
+    EXPECT_EQ(run_with({"--body-order", order}), pairs);
+    const Json result = readJson(file("o.json"))["cases"][0];
+    EXPECT_EQ(result["recording"]["name"], "Fountain reordered");
+    EXPECT_EQ(result["recording"]["reading"], (Json{{"body_order", order}}));
+    runQuietly({"--headless", "o.json", "--case", result["id"], "--json", "again.json"});
+    EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], result["recording"]);
+  }
+  expectRefusal({"--headless", "fountain", "--body-order", "hilbert"}, {"--body-order", "morton"});
+}
+
 TEST_F(Import, PairsAcrossPeriodicBoundariesAreFound) {
   // The first two atoms meet across the x faces, in the second frame also the last two across z.
   const auto frame = [](const std::string& atoms) {

@@ -84,8 +84,8 @@ FrameProvider::~FrameProvider() = default;
 
 void FrameProvider::store(const SceneInfo& scene, const Frame& first) {
   written_ = std::make_shared<Written>();
-  frames_ = adapted(std::make_unique<TemporaryFrames>(scene, written_), reading_);
   written_->append(scene, first);
+  frames_ = adapted(std::make_unique<TemporaryFrames>(scene, written_), reading_);
 }
 
 void FrameProvider::simulateNext() {

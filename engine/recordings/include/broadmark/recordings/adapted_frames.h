@@ -14,7 +14,8 @@
 
 namespace broadmark {
 
-/// Base of the adapters: the frames of a source with other boxes. Bodies keep their filters.
+/// Base of the adapters: the frames of a source with other boxes, or in another order. Bodies keep
+/// their filters.
 class AdaptedFrames : public IndexedFrames {
  public:
   [[nodiscard]] const SceneInfo& scene() const final { return scene_; }
@@ -32,6 +33,9 @@ class AdaptedFrames : public IndexedFrames {
   LargeVector<Aabb> boxes_;             ///< adapted
   bool reports_changes_ = false;        ///< the source lists its changes, and so does the adapter
   std::vector<std::uint32_t> changed_;  ///< bodies with other adapted boxes than a frame before
+  // As in the source, until its next frame.
+  const CollisionFilter* filter_ = nullptr;
+  std::span<const std::uint32_t> filter_changed_;
 
  private:
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> changed() const final;
@@ -41,14 +45,11 @@ class AdaptedFrames : public IndexedFrames {
   }
 
   std::unique_ptr<IndexedFrames> frames_;
-  // As in frames_, until its next frame.
-  const CollisionFilter* filter_ = nullptr;
-  std::span<const std::uint32_t> filter_changed_;
 };
 
 // `reading`: reading options that are not at their defaults, as in results. Each adapter is named
 // after its option, and they apply in the order of the list in adapted_frames.cpp: "swept",
-// "widen", "periodic". Other options are ignored. Boxes of a source that is periodic are wrapped in
+// "widen", "periodic", "body_order". Other options are ignored. Boxes of a source that is periodic are wrapped in
 // any case.
 
 /// The options among these that change boxes.
