@@ -351,5 +351,22 @@ TEST(FrameProvider, KeepsTheFiltersOfALiveSimulation) {
   }
 }
 
+// The order depends on the initial pose.
+TEST(FrameProvider, ReordersALiveSimulation) {
+  const auto freefall = [] {
+    auto simulation = makeSimulation("freefall");
+    setParameters(*simulation, {{"objects", "60"}, {"frames", "20"}});
+    return simulation;
+  };
+  std::size_t pairs = 0;
+  const auto known = freefall();
+  recordAll(*known, [&](const Frame& frame) { pairs = bruteForcePairs(frame.boxes).size(); });
+  FrameProvider provider(freefall(), {{"body_order", "morton"}});
+  while (provider.lastAvailable() < 20) provider.simulateNext();
+  EXPECT_EQ(bruteForcePairs(provider.at(20).boxes).size(), pairs);
+  EXPECT_GT(pairs, 0U);
+  EXPECT_EQ(provider.scene().name, "FreeFall reordered");
+}
+
 }  // namespace
 }  // namespace broadmark::tests
