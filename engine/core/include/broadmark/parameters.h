@@ -40,6 +40,8 @@ struct Parameter {
   std::variant<bool*, std::int64_t*, double*, Choice*, std::string*> value;
   double min = 0;  ///< inclusive range; numbers only
   double max = 0;
+  /// Heading for the user interface, which folds groups; "": often set, always shown.
+  std::string_view group = {};
 };
 
 using ParameterVisitor = std::function<void(const Parameter&)>;
