@@ -35,17 +35,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Path of an SDK plug-in: beside the program in a build, in the library folder when installed.
-fs::path fileOf(const std::string& name) {
-  std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  const fs::path folder = program.parent_path();
-  const fs::path built = folder / "plugins" / (name + ".so");
-  return fs::exists(built, failed)
-             ? built
-             : (folder / BROADMARK_PLUGIN_FOLDER / (name + ".so")).lexically_normal();
-}
-
 /// Error message of the last call of the dynamic loader, without the leading path.
 std::string loaderError(const std::string& path) {
   const char* text = ::dlerror();
@@ -66,7 +55,7 @@ std::string pluginFile(const std::string& name_or_path) {
                     "(find_package({}), see docs/installing.md)",
                     name_or_path, plugin->releases, plugin->package));
   }
-  return fileOf(name_or_path).string();
+  return shippedPlugin(name_or_path).string();
 }
 
 /// Loads a copy of a library; null if that is impossible, as when it needs others beside it.
@@ -253,6 +242,16 @@ std::vector<Algorithm> algorithmsIn(const std::string& file, PluginLoading loadi
 }
 
 }  // namespace
+
+fs::path shippedPlugin(const std::string& name) {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  const fs::path folder = program.parent_path();
+  const fs::path built = folder / "plugins" / (name + ".so");
+  return fs::exists(built, failed)
+             ? built
+             : (folder / BROADMARK_PLUGIN_FOLDER / (name + ".so")).lexically_normal();
+}
 
 std::vector<SdkPlugin> sdkPlugins() {
   std::vector<SdkPlugin> all;

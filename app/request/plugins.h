@@ -22,6 +22,9 @@ struct SdkPlugin {
 
 /// All SDK plug-ins, built or not.
 std::vector<SdkPlugin> sdkPlugins();
+/// Path of a plug-in that ships with the program: beside it in a build, in the library folder when
+/// installed.
+std::filesystem::path shippedPlugin(const std::string& name);
 
 // What stands before the argument of --plugin that is no library.
 inline constexpr char kPairLogPrefix[] = "pairs:";      ///< logged_pairs.h: a file
