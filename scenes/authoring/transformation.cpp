@@ -3,7 +3,9 @@
 #include "broadmark/scenes/transformation.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace broadmark::scenes {
 namespace {
@@ -52,6 +54,26 @@ Shape transformedShape(const AuthoredBody& body, const Transformation& change) {
     box.half_extents[static_cast<std::size_t>(axis)] *= static_cast<float>(factor);
   }
   return box;
+}
+
+Vec3 anglesOf(const Quaternion& rotation) {
+  constexpr double kUpright = 1 - 1e-9;  // beyond, a turn about x is one about z
+  const Eigen::Matrix3d m = wide(rotation).normalized().toRotationMatrix();
+  const double sine = std::clamp(-m(2, 0), -1.0, 1.0);
+  const bool is_upright = std::abs(sine) > kUpright;
+  const double x = is_upright ? std::atan2(-m(1, 2), m(1, 1)) : std::atan2(m(2, 1), m(2, 2));
+  const double z = is_upright ? 0 : std::atan2(m(1, 0), m(0, 0));
+  const Vector3d angles = Vector3d(x, std::asin(sine), z) * (180 / std::numbers::pi);
+  return narrow(angles + Vector3d::Zero());  // 0 instead of -0
+}
+
+Quaternion rotationBy(const Vec3& angles) {
+  const Vector3d radians = wide(angles) * (std::numbers::pi / 180);
+  const Quaterniond rotation = Eigen::AngleAxisd(radians.z(), Vector3d::UnitZ()) *
+                               Eigen::AngleAxisd(radians.y(), Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(radians.x(), Vector3d::UnitX());
+  const Vec3 parts = narrow(rotation.vec());
+  return {parts[0], parts[1], parts[2], static_cast<float>(rotation.w())};
 }
 
 }  // namespace broadmark::scenes
