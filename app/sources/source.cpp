@@ -169,6 +169,11 @@ std::string sourceKindsText() { return kindsText(sourceKinds()); }
 
 bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(name).isFile(); }
 
+bool hasSourceName(const fs::path& file) {
+  return isRecordingName(file) || kindByName(importKinds(), file) != nullptr ||
+         imports::hasExtension(file, {".json", ".jsonl"});
+}
+
 OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
   NamedSource source(name);
   OpenedSource opened = openAny(source, options);

@@ -115,6 +115,10 @@ std::string sourceKindsText();
 /// Whether the name is a built-in scene's id or refers to a file.
 bool isSource(const std::string& name);
 
+/// Whether a file is named like a source, compressed or not; others may be recognised by their
+/// content.
+bool hasSourceName(const std::filesystem::path&);
+
 /// Opens a source by the first kind that recognises it. Throws InputError.
 OpenedSource openSource(const std::string& name, const OpeningOptions&);
 
