@@ -137,5 +137,30 @@ TEST_F(GizmoTest, SnappingGoesBySteps) {
   EXPECT_NEAR(std::remainder(factor, 0.25F), 0, 1e-6);
 }
 
+TEST(Angles, AreThoseOfTheRotation) {
+  using scenes::anglesOf;
+  using scenes::rotationBy;
+  const auto expect_same = [](const Quaternion& a, const Quaternion& b) {
+    EXPECT_TRUE(rotationMatrix(a).isApprox(rotationMatrix(b), 1e-5)) << rotationMatrix(a);
+  };
+  const float half = std::sqrt(0.5F);
+  expect_same(rotationBy({90, 0, 0}), {half, 0, 0, half});
+  expect_same(rotationBy({0, 0, -90}), {0, 0, -half, half});
+  EXPECT_EQ(anglesOf({0, 0, 0, 1}), Vec3{});
+  for (const float x : {-170.0F, 0.0F, 20.0F, 90.0F}) {
+    for (const float y : {-90.0F, -30.0F, 0.0F, 90.0F}) {  // upright at ±90
+      for (const float z : {-179.0F, 0.0F, 45.0F}) {
+        const Quaternion rotation = rotationBy({x, y, z});
+        expect_same(rotationBy(anglesOf(rotation)), rotation);
+        if (std::abs(y) == 90) continue;
+        const Vec3 angles = anglesOf(rotation);
+        EXPECT_NEAR(angles[0], x, 1e-3);
+        EXPECT_NEAR(angles[1], y, 1e-3);
+        EXPECT_NEAR(angles[2], z, 1e-3);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace broadmark::tests

@@ -34,6 +34,8 @@ struct Inputs {
   Numbers world_max{};
   scenes::AuthoredParameters parameters;
   scenes::AuthoredBody body;  ///< the first selected body
+  Numbers position{};
+  Numbers angles{};
   Numbers size{};
   Numbers velocity{};
   Numbers spin{};
@@ -53,6 +55,7 @@ class AuthorPanel final : public Panel {
     drawState();
     drawBrush();
     drawSelection();
+    drawBodies();
     drawSteps();
     drawScene();
   }
@@ -66,7 +69,7 @@ class AuthorPanel final : public Panel {
   }
 
   template <class Value>
-  void set(bool entered, const char* verb, Value AuthoredBody::* property, const Value& value) {
+  void set(bool entered, const char* verb, Value AuthoredBody::*property, const Value& value) {
     edit(entered, [&](SceneEditor& editor) { editor.set(verb, property, value); });
   }
 
@@ -90,6 +93,8 @@ class AuthorPanel final : public Panel {
         selection_, [&](std::uint32_t id) { return scene.bodies[id].group != 0; });
     const scenes::AuthoredBody& body = scene.bodies[selection_.front()];
     inputs_.body = body;
+    inputs_.position = numbers(body.pose.position);
+    inputs_.angles = numbers(scenes::anglesOf(body.pose.rotation));
     inputs_.size = numbers(scenes::edgesOf(body.shape));
     inputs_.velocity = numbers(body.linear_velocity);
     inputs_.spin = numbers(body.angular_velocity);
@@ -244,6 +249,16 @@ class AuthorPanel final : public Panel {
     std::size_t shape = inputs_.body.shape.index();
     edit(ui.combo("shape", shape, {"box", "sphere"}),
          [&](SceneEditor& editor) { shape == 1 ? editor.makeSpheres() : editor.makeBoxes(); });
+    edit(ui.vector("position", inputs_.position, -kMaxCoordinate, kMaxCoordinate,
+                   "Centre of the first selected body; the others move along"),
+         [&](SceneEditor& editor) { moveFirstTo(editor, vec(inputs_.position)); });
+    edit(ui.vector("rotation", inputs_.angles, -360, 360,
+                   "Angles in degrees, about the world's axes x, y and z, in this order"),
+         [&](SceneEditor& editor) {
+           editor.change("rotate", [&](AuthoredBody& body) {
+             body.pose.rotation = scenes::rotationBy(vec(inputs_.angles));
+           });
+         });
     edit(ui.vector("size", inputs_.size, scenes::kMinEdge, scenes::kMaxEdge,
                    "Edge lengths in world units; for a sphere the first is the diameter"),
          [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
@@ -269,6 +284,44 @@ class AuthorPanel final : public Panel {
     const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
     set(vanishes, "set the last frame of", &AuthoredBody::vanishes,
         frame == 0 ? scenes::kNever : frame);
+  }
+
+  static void moveFirstTo(SceneEditor& editor, const Vec3& to) {
+    const Vec3 from = editor.scene().bodies[editor.selection().front()].pose.position;
+    editor.change("move", [&](AuthoredBody& body) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        // Exact for the first body.
+        body.pose.position[axis] = (body.pose.position[axis] - from[axis]) + to[axis];
+      }
+    });
+  }
+
+  void drawBodies() {
+    constexpr float kRows = 10;
+    const bool open = ImGui::CollapsingHeader("All bodies");
+    ui.note("All bodies");
+    if (!open) return;
+    const auto scope = ui.scope("All bodies");
+    const std::vector<AuthoredBody>& bodies = document_.editor.scene().bodies;
+    const float height =
+        std::min(static_cast<float>(bodies.size()), kRows) * ImGui::GetTextLineHeightWithSpacing();
+    ImGui::BeginChild("bodies", {0, height + 1}, false, ImGuiWindowFlags_NavFlattened);
+    clipped(bodies.size(), [&](std::size_t i) {
+      const auto id = static_cast<std::uint32_t>(i);
+      const Vec3& at = bodies[i].pose.position;
+      const char* const shape = bodies[i].shape.index() == 1 ? "sphere" : "box";
+      const bool pressed = ui.selectableLine(
+          fmt::format("{} {}", shape, i).c_str(), std::ranges::binary_search(selection_, id),
+          fmt::format("{:.4g}  {:.4g}  {:.4g}", at[0], at[1], at[2]), ui.theme.faint);
+      if (!pressed) return;
+      document_.show();
+      if (ImGui::GetIO().KeyCtrl) {
+        session.selection.toggle({id});
+      } else {
+        session.selection.select({id});
+      }
+    });
+    ImGui::EndChild();
   }
 
   void drawSteps() {
