@@ -29,8 +29,14 @@ void Inspector::drawTransport(const RunProgress& progress) {
   ImGui::BeginDisabled(session_.playback.source() == nullptr);
   drawButtons();
   ImGui::SameLine();
+  const auto draw_loop = [this] {
+    ui_.toggle("Loop", session_.playback.loop, "Restart after the last frame");
+    ImGui::SameLine();
+  };
+  if (!narrow) draw_loop();
   drawSpeed();
   if (!narrow) ImGui::SameLine();
+  if (narrow) draw_loop();
   drawPosition(progress);
   ImGui::EndDisabled();
 }
@@ -48,8 +54,6 @@ void Inspector::drawButtons() {
   }
   ImGui::SameLine();
   if (ui_.button(">", "Next frame (Right)")) playback.step(1);
-  ImGui::SameLine();
-  ui_.toggle("Loop", playback.loop, "Restart after the last frame");
 }
 
 void Inspector::drawSpeed() {
@@ -57,14 +61,18 @@ void Inspector::drawSpeed() {
   std::vector<std::string> speeds;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < std::size(kSpeeds); ++i) {
-    speeds.push_back(kSpeeds[i] >= 1000 ? "fastest" : fmt::format("{:g} frames/s", kSpeeds[i]));
+    speeds.push_back(kSpeeds[i] >= 1000 ? "fastest" : fmt::format("{:g}/s", kSpeeds[i]));
     if (kSpeeds[i] <= playback.frames_per_second) chosen = i;
   }
   if (ui_.combo("##speed", chosen, speeds, "Maximum number of frames per second",
-                std::min(108 * ui_.scale, ImGui::GetContentRegionAvail().x))) {
+                std::min(90 * ui_.scale, ImGui::GetContentRegionAvail().x))) {
     playback.frames_per_second = kSpeeds[chosen];
   }
   // Reserve the space while paused, so that the layout does not change.
+  constexpr float kWidth = 40;  // units
+  const float room = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x -
+                     ImGui::GetItemRectMax().x - ImGui::GetStyle().ItemSpacing.x;
+  if (room < kWidth * ui_.scale) return;
   ImGui::SameLine();
   const float left = ImGui::GetCursorPosX();
   ImGui::AlignTextToFramePadding();
@@ -73,7 +81,7 @@ void Inspector::drawSpeed() {
   ui_.faint(achieved ? fmt::format("{:.{}f}/s", *achieved, digits) : "");
   ui_.note("achieved");
   ui_.tooltip("Frames shown in the last second");
-  ImGui::SameLine(left + 40 * ui_.scale);
+  ImGui::SameLine(left + kWidth * ui_.scale);
   ImGui::Dummy({0, 0});
 }
 

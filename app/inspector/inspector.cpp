@@ -9,6 +9,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -19,21 +20,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kFontSize = 15;        // units
-constexpr float kLargeFontSize = 20;   // units
-constexpr float kMinAreaExtent = 110;  // units: of a visible dock area
+constexpr float kFontSize = 15;       // units
+constexpr float kLargeFontSize = 20;  // units
 
 }  // namespace
 
 Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences,
-                     float scale, ExecutorFactory make_executor, SimulationHost host)
+                     float scale, ExecutorFactory make_executor, SimulationHost host,
+                     const fs::path& autosaves)
     : preferences_(std::move(preferences)),
       context_(ImGui::CreateContext()),
       renderer_(gl),
       gl_(&gl),
+      files_(preferences_.folders),
       session_(std::move(algorithms), std::move(make_executor), std::move(host)),
       views_(gl),
       panels_(makePanels({ui_, session_, views_.first(), files_})),
+      start_page_(gl),
+      autosave_(autosaves),
       screen_scale_(scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
@@ -42,13 +46,19 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
   io.MousePos = {-FLT_MAX, -FLT_MAX};
   setKeyMap(io);
   applyStyle();
-  for (const auto& [area, panel] : preferences_.tabs)
-    session_.notices.panels_to_raise.push_back(panel);
-  session_.notices.on_file_used = [this](const fs::path& file) { preferences_.remember(file); };
+  for (const PanelTab& panel : panels_) {
+    const auto front = preferences_.tabs.find(std::string(kDockAreas.nameOf(areaOf(panel))));
+    const bool is_front = front != preferences_.tabs.end() && front->second == panel.name;
+    if (is_front && !isHidden(panel)) in_front_.emplace_back(panel.name);
+  }
+  session_.notices.on_file_used = [this](const fs::path& file) {
+    preferences_.remember(file);
+    commands_changed_ = true;
+  };
   ui_.on_correction = [this](const std::string& text) {
     session_.notices.setStatus(text, Severity::warning);
   };
-  makeShortcuts();
+  makeCommands();
 }
 
 Inspector::~Inspector() { ImGui::DestroyContext(context_); }
@@ -70,7 +80,9 @@ void Inspector::loadFonts() {
 
 void Inspector::draw(InputQueue& input, int width, int height, double seconds,
                      const std::function<void()>& bind) {
+  const auto start = std::chrono::steady_clock::now();
   ImGui::SetCurrentContext(context_);
+  if (std::exchange(commands_changed_, false)) makeCommands();
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
@@ -83,10 +95,14 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   ImGui::NewFrame();
   ui_.begin();
   session_.runs.readProgress([&](const RunProgress& progress) {
+    progress_ = &progress;
     session_.advance(progress, seconds);
+    start_page_.update(session_);
     handleShortcuts();
-    build(progress, width, height);
+    build(progress, width, height, seconds);
+    progress_ = nullptr;
   });
+  session_.notices.catchErrors([&] { autosave_.update(session_.document, seconds, closing_); });
   ImGui::Render();
   bind();
   const ImVec4 back = ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg);
@@ -96,10 +112,30 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   renderer_.draw(*ImGui::GetDrawData());
   session_.runs.drawGate().endDrawing();
   session_.postRequest();
+  rate_.add(seconds,
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+void Inspector::PictureRate::add(double seconds, double drawing_seconds) {
+  constexpr double kWindowSeconds = 0.5;
+  seconds_ += seconds;
+  drawing_seconds_ += drawing_seconds;
+  ++pictures_;
+  if (seconds_ < kWindowSeconds) return;
+  text = fmt::format("{:.0f} pictures/s, {:.1f} ms", pictures_ / seconds_,
+                     1000 * drawing_seconds_ / pictures_);
+  seconds_ = drawing_seconds_ = 0;
+  pictures_ = 0;
 }
 
 bool Inspector::needsRedraw() {
   return session_.busy() || views_.needsRedraw() || ImGui::GetIO().WantTextInput;
+}
+
+std::optional<double> Inspector::animationSeconds() const {
+  if (rate_.shown) return 0;
+  if (start_page_.isShown(session_)) return StartPage::kFrameSeconds;
+  return {};
 }
 
 std::optional<fs::path> Inspector::takeScreenshotRequest() {
@@ -112,109 +148,100 @@ std::optional<fs::path> Inspector::takeScreenshotRequest() {
   return path;
 }
 
-void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign) {
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  beginAt(id, position, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);
-  ImGui::InvisibleButton(id, {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
-  ui_.note(id);
-  const bool vertical = size.y > size.x;
-  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
-    ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-    ImGui::GetWindowDrawList()->AddRectFilled(position, {position.x + size.x, position.y + size.y},
-                                              colour(ui_.theme.accent, 0.5F));
-  }
-  if (ImGui::IsItemActive()) {
-    const ImVec2 moved = ImGui::GetIO().MouseDelta;
-    extent += static_cast<double>(sign * (vertical ? moved.x : moved.y) / ui_.scale);
-    extent = std::max(extent, static_cast<double>(kMinAreaExtent));
-  }
-  ImGui::End();
-  ImGui::PopStyleVar();
-}
-
-void Inspector::build(const RunProgress& progress, int width, int height) {
+void Inspector::build(const RunProgress& progress, int width, int height, double seconds) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  drawMenus(progress);
+  drawMenus();
+  showRaisedPanels();
+  drawn_areas_ = {};
   const float unit = ui_.scale;
   const auto w = static_cast<float>(width);
   const auto h = static_cast<float>(height);
   const float top = ImGui::GetFrameHeight();
   const float line = ImGui::GetFrameHeight() + 2 * unit;
   const float status_top = std::max(h - line, top);
-  const float gap = kSplitterSize * unit;
-  // In a small window the dock areas shrink, then vanish, to make room for the view.
-  const auto extent = [&](double preferred, float max) {
-    const float actual = std::min(static_cast<float>(preferred) * unit, max);
-    return actual < kMinAreaExtent * unit ? 0.0F : actual;
+  const auto draw_playback = [&](float left, float playback_width, float bottom) {
+    const float playback_height = transportHeight(playback_width);
+    const float playback_top = std::max(bottom - playback_height, top + 1);
+    beginAt("Playback", {left, playback_top}, {playback_width, playback_height},
+            ImGuiWindowFlags_NoScrollbar);
+    drawn_areas_.back() = true;
+    focusIfRequested(kDockAreas.entries.size());
+    drawTransport(progress);
+    ImGui::End();
+    return playback_top;
   };
-  const float left = extent(preferences_.left, 0.30F * w);
-  const float right = extent(preferences_.right, 0.30F * w);
-  const float bottom = extent(preferences_.bottom, 0.40F * (status_top - top));
-  const float view_left = left > 0 ? left + gap : 0;
-  const float view_right = right > 0 ? w - right - gap : w;
-  const float middle = std::max(view_right - view_left, 1.0F);
-  const float transport_height = transportHeight(middle);
-  const float view_bottom =
-      std::max(status_top - (bottom > 0 ? bottom + gap : 0) - transport_height, top + 1);
 
-  if (left > 0) {
-    drawDockArea(DockArea::left, progress, {0, top}, {left, status_top - top});
-    splitter("left splitter", {left, top}, {gap, status_top - top}, preferences_.left, 1);
+  if (maximised_ && hasVisiblePanel(*maximised_)) {
+    const float bottom = draw_playback(0, w, status_top);
+    drawDockArea(*maximised_, progress, {0, top}, {w, bottom - top});
+  } else {
+    const float gap = kSplitterSize * unit;
+    // The start page has their place until they are wanted.
+    const bool has_bottom = session_.playback.source() || session_.results || bottom_wanted_;
+    auto [left, right, bottom] = layout(w, top, status_top);
+    if (!has_bottom) bottom = 0;
+    const float view_left = left > 0 ? left + gap : 0;
+    const float view_right = right > 0 ? w - right - gap : w;
+    const float middle = std::max(view_right - view_left, 1.0F);
+    if (left > 0) {
+      drawDockArea(DockArea::left, progress, {0, top}, {left, status_top - top});
+      splitter("left splitter", {left, top}, {gap, status_top - top}, preferences_.left, 1);
+    }
+    if (right > 0) {
+      drawDockArea(DockArea::right, progress, {w - right, top}, {right, status_top - top});
+      splitter("right splitter", {w - right - gap, top}, {gap, status_top - top},
+               preferences_.right, -1);
+    }
+    if (bottom > 0) {
+      drawDockArea(DockArea::bottom, progress, {view_left, status_top - bottom}, {middle, bottom});
+      splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
+               preferences_.bottom, -1);
+    }
+    const float view_bottom =
+        has_bottom ? draw_playback(view_left, middle, status_top - (bottom > 0 ? bottom + gap : 0))
+                   : status_top;
+    drawMiddle(progress, {view_left, top}, {middle, view_bottom - top}, seconds);
   }
-  if (right > 0) {
-    drawDockArea(DockArea::right, progress, {w - right, top}, {right, status_top - top});
-    splitter("right splitter", {w - right - gap, top}, {gap, status_top - top}, preferences_.right,
-             -1);
-  }
-  if (bottom > 0) {
-    drawDockArea(DockArea::bottom, progress, {view_left, status_top - bottom}, {middle, bottom});
-    splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
-             preferences_.bottom, -1);
-  }
-  views_.draw(ui_, session_, progress, {view_left, top}, {middle, view_bottom - top});
-  beginAt("Playback", {view_left, view_bottom}, {middle, transport_height},
-          ImGuiWindowFlags_NoScrollbar);
-  focusIfRequested(kDockAreas.entries.size());
-  drawTransport(progress);
-  ImGui::End();
   beginAt("Status", {0, status_top}, {w, line}, ImGuiWindowFlags_NoScrollbar);
   drawStatus(progress);
   ImGui::End();
 
-  session_.notices.panels_to_raise.clear();
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
   drawQuitDialog();
   drawHelp();
+  palette_.draw(ui_, commands_);
   drawErrors();
   ImGui::PopStyleVar();
 }
 
-void Inspector::drawDockArea(DockArea area, const RunProgress& progress, ImVec2 position,
-                             ImVec2 size) {
-  const std::string name(kDockAreas.nameOf(area));
-  beginAt(name.c_str(), position, size);
-  focusIfRequested(static_cast<std::size_t>(area));
-  if (ImGui::BeginTabBar(name.c_str(), ImGuiTabBarFlags_FittingPolicyScroll)) {
-    for (const auto& panel : panels_) {
-      if (panel.area != area) continue;
-      const bool raised = std::ranges::find(session_.notices.panels_to_raise, panel.name) !=
-                          session_.notices.panels_to_raise.end();
-      const bool open =
-          ImGui::BeginTabItem(panel.name, nullptr, raised ? ImGuiTabItemFlags_SetSelected : 0);
-      ui_.note(panel.name);
-      ui_.tooltip(panel.tooltip);
-      if (!open) continue;
-      preferences_.tabs[name] = panel.name;
-      const auto scope = ui_.scope(panel.name);
-      ImGui::BeginChild(panel.name, {0, 0}, false, ImGuiWindowFlags_NavFlattened);
-      panel.panel->drawOf(progress);
-      ImGui::EndChild();
-      ImGui::EndTabItem();
-    }
-    ImGui::EndTabBar();
+void Inspector::drawMiddle(const RunProgress& progress, ImVec2 position, ImVec2 size,
+                           double seconds) {
+  if (!start_page_.isShown(session_)) {
+    views_.draw(ui_, session_, progress, position, size);
+    return;
   }
+  std::vector<StartPage::Entry> recovered;
+  for (const Autosave::Left& left : autosave_.left()) {
+    recovered.push_back({.text = left.title,
+                         .tooltip = "Open this scene with its unsaved changes",
+                         .open = [this, left] { recover(left); }});
+  }
+  std::vector<StartPage::Entry> recent;
+  for (const std::string& file : preferences_.recent) {
+    recent.push_back({.text = fs::path(file).filename().string(),
+                      .tooltip = file,
+                      .open = [this, file] { session_.open(file); }});
+  }
+  beginAt("Start page", position, size);
+  start_page_.draw(ui_, session_, recovered, recent, seconds);
   ImGui::End();
+}
+
+void Inspector::recover(const Autosave::Left& left) {
+  session_.document.closeThen([this, left] {
+    session_.notices.catchErrors([&] { autosave_.recover(left, session_.document); });
+  });
 }
 
 void Inspector::drawErrors() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,44 +13,27 @@
 #include "broadmark/render/gl.h"
 #include "broadmark/render/input_queue.h"
 #include "broadmark/render/ui_renderer.h"
+#include "inspector/authoring/autosave.h"
+#include "inspector/commands.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/session.h"
 #include "inspector/ui/file_dialog.h"
 #include "inspector/ui/preferences.h"
 #include "inspector/ui/ui.h"
+#include "inspector/views/start_page.h"
 #include "inspector/views/view.h"
 
 struct ImGuiContext;
 
 namespace broadmark {
 
-/// A keyboard shortcut.
-struct Shortcut {
-  Key key = 0;
-  bool ctrl = false;
-  bool shift = false;
-  std::string doc = {};
-  std::function<void()> action;
-
-  /// The key combination as text: "Ctrl+O".
-  [[nodiscard]] std::string keys() const;
-};
-
-/// Descriptions of the shortcuts that also appear in menus.
-inline constexpr const char* kOpenFile = "open a file";
-inline constexpr const char* kSave =
-    "save the authored scene, or the available frames as a recording";
-inline constexpr const char* kQuit = "quit";
-inline constexpr const char* kSaveScreenshot = "save a screenshot";
-inline constexpr const char* kShowHelp = "show this page";
-
 class Inspector {
  public:
-  /// `scale`: pixels per unit. The GL context must be current from construction to destruction; at
-  /// most one instance may exist.
+  /// `scale`: pixels per unit. `autosaves`: folder of unsaved scenes; "": none are kept. The GL
+  /// context must be current from construction to destruction; at most one instance may exist.
   Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale,
             ExecutorFactory make_executor = makeInProcessExecutor,
-            SimulationHost host = simulateInProcess);
+            SimulationHost host = simulateInProcess, const std::filesystem::path& autosaves = {});
   ~Inspector();
   Inspector(const Inspector&) = delete;
   Inspector& operator=(const Inspector&) = delete;
@@ -70,6 +54,8 @@ class Inspector {
   }
   /// Whether the picture changes without input.
   [[nodiscard]] bool needsRedraw();
+  /// Time after which to draw a picture that moves for ever; nothing: there is none.
+  [[nodiscard]] std::optional<double> animationSeconds() const;
   /// Returns the file for a requested screenshot, and clears the request.
   std::optional<std::filesystem::path> takeScreenshotRequest();
   /// Directory of the numbered pictures of a movie; "": not recording.
@@ -77,19 +63,38 @@ class Inspector {
   /// Returns a value of the session's state as text, for scripts and tests: "frame", "pairs", …
   /// Nothing for an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
+  [[nodiscard]] const std::vector<UserCommand>& commands() const { return commands_; }
   [[nodiscard]] const std::vector<PanelTab>& panels() const { return panels_; }
   [[nodiscard]] bool hasPanel(std::string_view name) const {
     return std::ranges::find(panels_, name, &PanelTab::name) != panels_.end();
   }
 
  private:
+  /// Sizes of the dock areas in pixels; 0: hidden.
+  struct Layout {
+    float left = 0;
+    float right = 0;
+    float bottom = 0;
+  };
+  /// Measures pictures.
+  struct PictureRate {
+    void add(double seconds, double drawing_seconds);
+
+    bool shown = false;
+    std::string text;
+
+   private:
+    double seconds_ = 0;
+    double drawing_seconds_ = 0;
+    int pictures_ = 0;
+  };
+
   void applyStyle();
   void loadFonts();
-  void build(const RunProgress& progress, int width, int height);
-  void drawMenus(const RunProgress& progress);
-  void drawScaleMenu();
-  void resetLayout();
-  void drawDockArea(DockArea area, const RunProgress& progress, ImVec2 position, ImVec2 size);
+  void build(const RunProgress& progress, int width, int height, double seconds);
+  void drawMiddle(const RunProgress& progress, ImVec2 position, ImVec2 size, double seconds);
+  void recover(const Autosave::Left& left);
+  void drawMenus();
   [[nodiscard]] float transportHeight(float width) const;
   void drawTransport(const RunProgress& progress);
   void drawButtons();
@@ -102,25 +107,53 @@ class Inspector {
   void drawQuitDialog();
   /// Closes, after the user has decided about unsaved changes.
   void closeDocument();
-  void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
-  void makeShortcuts();
+
+  // Commands: see command_table.cpp.
+  void makeCommands();
+  std::vector<UserCommand> playbackCommands();
+  std::vector<UserCommand> fileCommands();
+  std::vector<UserCommand> authorCommands();
+  std::vector<UserCommand> viewCommands();
+  std::vector<UserCommand> panelCommands();
   void handleShortcuts();
-  /// Returns the keys of the shortcut with this description, for menus.
-  [[nodiscard]] std::string keysFor(std::string_view doc) const;
+  void escape();
+  void askOpen();
+  void askLoadAlgorithms();
+  void askSaveRecording();
+  void askExportTimings(const std::string& table);
+  void askMovie();
+
+  // Docked panels: see docks.cpp.
+  [[nodiscard]] DockArea areaOf(const PanelTab& panel) const;
+  [[nodiscard]] bool isHidden(const PanelTab& panel) const;
+  void setHidden(const PanelTab& panel, bool hidden);
+  void movePanel(const PanelTab& panel, DockArea to);
+  /// Fills the window with an area, or the view for none; restores the others if it does already.
+  void maximise(std::optional<DockArea> area);
+  /// The focused area, else the bottom one.
+  [[nodiscard]] DockArea areaInUse() const;
+  [[nodiscard]] bool hasVisiblePanel(DockArea area) const;
+  void resetLayout();
+  /// Makes the raised panels visible.
+  void showRaisedPanels();
+  [[nodiscard]] bool isRaised(const PanelTab& panel) const;
+  [[nodiscard]] Layout layout(float width, float top, float bottom) const;
+  void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
+  void drawDockArea(DockArea area, const RunProgress& progress, ImVec2 position, ImVec2 size);
+  void drawTab(const PanelTab& panel, const std::string& area, const RunProgress& progress);
+  void drawTabMenu(const PanelTab& panel);
+
+  // Keyboard navigation: see shortcuts.cpp.
   /// Enables or disables keyboard navigation for the next picture.
   void prepareNavigation();
   void focusNextArea(int step);
   void enterPanel(const PanelTab& panel);
   /// Call inside the window of an area: focuses it if requested.
   void focusIfRequested(std::size_t area);
-  void escape();
-  void toggleTool(Tool tool);
-  void editAuthored(const std::function<void(scenes::SceneEditor&)>& change);
-  void askOpen();
-  void askLoadAlgorithms();
-  void askSaveRecording();
-  void askExportTimings(const std::string& table);
-  void askMovie();
+  /// Focuses the last item, which is the tab of a panel.
+  void focusTab(DockArea area);
+  /// Starts keyboard navigation in the current window, which is that of an area.
+  void navigateFrom(std::size_t area);
 
   Preferences preferences_;
   ImGuiContext* context_;
@@ -131,10 +164,24 @@ class Inspector {
   Session session_;
   Views views_;
   std::vector<PanelTab> panels_;
-  std::vector<Shortcut> shortcuts_;
+  std::vector<std::string> in_front_;  ///< panels, in the last session
+  std::vector<std::string> raised_;    ///< panels to bring to the front in this picture
+  std::vector<UserCommand> commands_;
+  bool commands_changed_ = false;          ///< the recent files have
+  const RunProgress* progress_ = nullptr;  ///< during a picture, for commands
+  /// Whether the panels at the bottom and the playback are shown while nothing is open.
+  bool bottom_wanted_ = false;
+  CommandPalette palette_;
+  StartPage start_page_;
+  Autosave autosave_;
+  PictureRate rate_;
+  std::optional<DockArea> maximised_;  ///< fills the window
+  bool view_alone_ = false;            ///< all panels are hidden
   bool help_open_ = false;
   bool keyboard_navigation_ = false;          ///< keys move the focus among widgets
   std::optional<std::size_t> focus_request_;  ///< area to focus in the next picture
+  std::string panel_to_focus_;                ///< once its tab is open
+  std::array<bool, 4> drawn_areas_{};         ///< dock areas and playback, in the last picture
   std::size_t focused_ = 0;
   bool quit_requested_ = false;  ///< the quit dialog is open
   bool closing_ = false;

@@ -108,16 +108,33 @@ void openPlan(Session& session, Plan plan) {
   if (frame) session.playback.goTo(*frame);
 }
 
+/// Calls `save`, and prints its error.
+template <class Save>
+void report(const Save& save) {
+  try {
+    save();
+  } catch (const InputError& error) {
+    std::cerr << fmt::format("broadmark: {}\n", error.what());
+  }
+}
+
+void setWindowSize(Preferences& preferences, const Window& window) {
+  preferences.window_width = static_cast<int>(static_cast<float>(window.width()) / window.scale());
+  preferences.window_height =
+      static_cast<int>(static_cast<float>(window.height()) / window.scale());
+}
+
 /// Opens a window and returns when it is closed. Throws RenderError if no window can be opened.
 void inspectInWindow(Plan plan, const fs::path& script_file) {
-  const fs::path preferences_path = preferencesPath();
-  Preferences preferences = loadPreferences(preferences_path);
+  Preferences preferences = loadPreferences(preferencesPath());
+  PreferencesFile stored(preferencesPath(), preferences);
   Window window("Broadmark", preferences.window_width, preferences.window_height);
   const Gl gl{[](const char* name) { return Window::function(name); }};
   std::unique_ptr<Script> script = scriptOf(script_file);
   {
     Inspector inspector(gl, plan.algorithms, preferences, window.scale(),
-                        executorFactory(plan.request.hosts), hostOf(plan.request));
+                        executorFactory(plan.request.hosts), hostOf(plan.request),
+                        autosaveFolder());
     linkClipboard(window);
     openPlan(inspector.session(), std::move(plan));
     Movie movie;
@@ -127,7 +144,8 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
       const auto now = std::chrono::steady_clock::now();
       const double seconds = std::chrono::duration<double>(now - last_draw).count();
       const bool needs_redraw = inspector.needsRedraw() || script || !window.input().empty();
-      window.poll(needs_redraw ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
+      const double idle_seconds = inspector.animationSeconds().value_or(kIdleSeconds);
+      window.poll(std::max((needs_redraw ? kPictureSeconds : idle_seconds) - seconds, 1e-4));
       for (const fs::path& file : window.consumeDrops()) inspector.session().open(file);
       if (window.closing()) {
         window.cancelClosing();  // until the user has decided about unsaved changes
@@ -143,20 +161,17 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
                      std::chrono::duration<double>(last_draw - now).count() + seconds, bind);
       writePictures(inspector, movie,
                     [&] { return readPicture(gl, window.width(), window.height()); });
+      preferences = inspector.preferences();
+      setWindowSize(preferences, window);
+      if (!script) report([&] { stored.update(preferences, seconds); });
       window.setCursor(ImGui::GetMouseCursor());
       window.swap();
     }
     preferences = inspector.preferences();
   }
   script.reset();  // ends the sandbox: the preferences are outside of it
-  preferences.window_width = static_cast<int>(static_cast<float>(window.width()) / window.scale());
-  preferences.window_height =
-      static_cast<int>(static_cast<float>(window.height()) / window.scale());
-  try {
-    savePreferences(preferences_path, preferences);
-  } catch (const InputError& error) {
-    std::cerr << fmt::format("broadmark: {}\n", error.what());
-  }
+  setWindowSize(preferences, window);
+  report([&] { stored.save(preferences); });
 }
 
 /// Draws off-screen until the script is done and the session is idle. Preferences are neither read

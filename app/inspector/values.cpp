@@ -75,7 +75,7 @@ void addSecond(Values& values, const Session& session, const RunProgress& progre
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";
   const PairComparison* comparison = progress.comparison.get();
-  const auto count = [&](const std::vector<Pair> PairComparison::* pairs) {
+  const auto count = [&](const std::vector<Pair> PairComparison::*pairs) {
     return comparison ? std::to_string((comparison->*pairs).size()) : "";
   };
   values["compare.both"] = comparison ? std::to_string(comparison->both) : "";
@@ -262,6 +262,11 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["layout"] =
       fmt::format("{:g} {:g} {:g}", preferences_.left, preferences_.right, preferences_.bottom);
   values["theme"] = preferences_.dark ? "dark" : "light";
+  values["start_page"] = yesOrNo(start_page_.isShown(session_));
+  values["recoverable"] = std::to_string(autosave_.left().size());
+  values["maximised"] = view_alone_ ? "View" : maximised_ ? kDockAreas.nameOf(*maximised_) : "";
+  values["hidden_panels"] = fmt::format("{}", fmt::join(preferences_.hidden, ", "));
+  values["picture_rate"] = rate_.shown ? rate_.text : "";
   values["help"] = yesOrNo(help_open_);
   values["focus"] = ui_.focused();
   values["popup"] =

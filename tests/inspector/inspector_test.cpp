@@ -1,5 +1,5 @@
 // The window's contents, drawn off-screen, with events from the real input queue.
-#include "inspector/inspector.h"
+#include "inspector/inspector_test.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -11,102 +11,14 @@
 #include <set>
 #include <sstream>
 
-#include "broadmark/algorithms.h"
 #include "broadmark/names.h"
 #include "broadmark/render/colouring.h"
-#include "broadmark/render/framebuffer.h"
-#include "engine/helpers.h"
-#include "inspector/helpers.h"
 #include "inspector/views/view_content.h"
 #include "support/pictures.h"
 #include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
-
-class InspectorTest : public testing::Test {
- protected:
-  InspectorTest()
-      : context(makeOffscreenContext(GlSource::automatic)),
-        gl(*context),
-        inspector(gl, algorithmsAndFaultyOnes(), {}, 1),
-        former_directory(std::filesystem::current_path()) {
-    std::filesystem::current_path(directory / "");  // the folder of screenshots
-    setParameters(inspector.session().draft.scene(), {{"objects", "40"}, {"frames", "20"}});
-  }
-  ~InspectorTest() override {
-    // A running batch writes below the directory that is about to be removed.
-    BackgroundBake& bake = inspector.session().jobs.get<BackgroundBake>();
-    bake.cancel();
-    bake.wait();
-    std::filesystem::current_path(former_directory);
-  }
-
-  void draw(int pictures = 1) {
-    for (int i = 0; i < pictures; ++i) {
-      const Framebuffer target(gl, width, height, 1);
-      inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
-    }
-  }
-
-  Picture picture() {
-    const Framebuffer target(gl, width, height, 1);
-    inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
-    return target.read();
-  }
-
-  /// Draws until the queue is empty and the session is idle.
-  void waitUntilIdle() {
-    for (int i = 0; i < 400; ++i) {
-      draw();
-      inspector.session().runs.waitUntilIdle(kForever);
-      if (i > 2 && input.empty()) return;
-    }
-  }
-
-  void colourBy(std::string_view mode) {
-    const auto found = std::ranges::find(colourModes(), mode, &ColourMode::id);
-    ASSERT_NE(found, colourModes().end()) << mode;
-    inspector.session().display.colouring =
-        static_cast<std::size_t>(std::distance(colourModes().begin(), found));
-  }
-
-  void click(const std::string& widget) {
-    const WidgetPlace* place = inspector.ui().find(widget);
-    ASSERT_NE(place, nullptr) << widget;
-    press(centreOf(*place));
-  }
-
-  static ImVec2 centreOf(const WidgetPlace& place) {
-    return {(place.min.x + place.max.x) / 2, (place.min.y + place.max.y) / 2};
-  }
-
-  void press(ImVec2 at) {
-    input.push({.kind = InputEvent::Kind::move, .x = at.x, .y = at.y});
-    for (const bool down : {true, false}) {
-      input.push({.kind = InputEvent::Kind::button, .code = 0, .down = down});
-    }
-  }
-
-  void key(Key which) {
-    for (const bool down : {true, false}) {
-      input.push({.kind = InputEvent::Kind::key, .code = which, .down = down});
-    }
-  }
-
-  std::string value(const std::string& name) {
-    return inspector.value(name).value_or("(no such value)");
-  }
-
-  std::unique_ptr<OffscreenContext> context;
-  Gl gl;
-  Inspector inspector;
-  InputQueue input;
-  TemporaryDirectory directory;
-  std::filesystem::path former_directory;
-  int width = 960;
-  int height = 600;
-};
 
 TEST_F(InspectorTest, DrawsWithNothingOpen) {
   draw(3);
@@ -462,13 +374,7 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
   inspector.session().tracks.add("grid-bf-mt");
   waitUntilIdle();
   const auto press = [&](Key which, const std::vector<Key>& held = {}) {
-    for (const Key modifier : held) {
-      input.push({.kind = InputEvent::Kind::key, .code = modifier, .down = true});
-    }
-    key(which);
-    for (const Key modifier : held) {
-      input.push({.kind = InputEvent::Kind::key, .code = modifier, .down = false});
-    }
+    key(which, held);
     for (int i = 0; i < 8 && (i < 2 || !input.empty()); ++i) draw();
   };
   const std::vector<PanelTab>& panels = inspector.panels();
@@ -577,6 +483,7 @@ TEST_P(RandomEvents, DoNoHarm) {
         auto place = places.begin();
         std::advance(place, below(static_cast<int>(places.size())));
         if (place->first.find("Quit") != std::string::npos) break;
+        if (place->first.find("million") != std::string::npos) break;  // it would take hours
         press(centreOf(place->second));
         break;
       }

@@ -86,13 +86,13 @@ Picture cropped(const Picture& whole, const ImRect& at) {
 
 using Size = std::pair<int, int>;
 
-class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
+class AllPanels : public testing::Test {
  protected:
-  PanelsLook()
-      : context(makeOffscreenContext(GlSource::automatic)),
+  AllPanels(Size window, bool dark, float scale)
+      : size(std::move(window)),
+        context(makeOffscreenContext(GlSource::automatic)),
         gl(*context),
-        inspector(gl, algorithmsAndFaultyOnes(), {.dark = std::get<bool>(GetParam())}, 1,
-                  ruledHost),
+        inspector(gl, algorithmsAndFaultyOnes(), {.dark = dark}, scale, ruledHost),
         session(inspector.session()) {}
 
   /// Gives every panel contents. Draws nothing, because drawing would advance the playback.
@@ -131,7 +131,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
   }
 
   Picture pictureOf(const PanelTab& panel) {
-    const auto [width, height] = std::get<Size>(GetParam());
+    const auto [width, height] = size;
     const Framebuffer target(gl, width, height, 1);
     inspector.session().notices.raisePanel(panel.name);
     // The first frames raise the tab and compute the widths of its tables.
@@ -149,6 +149,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     return cropped(whole, at);
   }
 
+  Size size;
   std::unique_ptr<OffscreenContext> context;
   Gl gl;
   Inspector inspector;
@@ -156,10 +157,15 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
   InputQueue input;
 };
 
+class PanelsLook : public AllPanels, public testing::WithParamInterface<std::tuple<Size, bool>> {
+ protected:
+  PanelsLook() : AllPanels(std::get<Size>(GetParam()), std::get<bool>(GetParam()), 1) {}
+};
+
 TEST_P(PanelsLook, AsTheyDid) {
   if (!hasGoldenLetters()) GTEST_SKIP() << "the golden pictures have other letters";
   prepare();
-  const auto& [size, dark] = GetParam();
+  const bool dark = std::get<bool>(GetParam());
   for (const auto& panel : inspector.panels()) {
     // Side panels have the same width in both windows, except for 3 pixels.
     if (!dark && panel.area != DockArea::bottom) continue;
@@ -173,6 +179,26 @@ TEST_P(PanelsLook, AsTheyDid) {
 INSTANTIATE_TEST_SUITE_P(SizesAndThemes, PanelsLook,
                          testing::Values(std::tuple(Size{1920, 1080}, true),
                                          std::tuple(Size{1024, 700}, false)));
+
+class PanelsFit : public AllPanels, public testing::WithParamInterface<std::tuple<Size, float>> {
+ protected:
+  PanelsFit() : AllPanels(std::get<Size>(GetParam()), true, std::get<float>(GetParam())) {}
+};
+
+TEST_P(PanelsFit, NoWidgetIsCutOff) {
+  prepare();
+  for (const auto& panel : inspector.panels()) {
+    pictureOf(panel);
+    for (const auto& [name, place] : inspector.ui().places()) {
+      if (!name.starts_with(panel.name)) continue;
+      EXPECT_FALSE(place.cut) << name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SizesAndScales, PanelsFit,
+                         testing::Values(std::tuple(Size{1440, 900}, 2.0F),
+                                         std::tuple(Size{1024, 700}, 1.5F)));
 
 }  // namespace
 }  // namespace broadmark::tests

@@ -104,20 +104,20 @@ TEST(FrameValues, KnowsLowestHighestAndFirstOfAnyFrames) {
 
 // A plot of 800 pixels shows each of a few marks among many frames, in a block of its own.
 TEST(FrameValues, ThinningLosesNoMark) {
-  constexpr std::uint32_t kFrames = 100'000;
+  constexpr std::uint32_t kPlotted = 100'000;
   FrameValues marks;
-  marks.set(kFrames - 1, FrameValues::kUnknown);
-  const std::vector<std::uint32_t> marked = {0, 1, 4711, 50'000, kFrames - 1};
+  marks.set(kPlotted - 1, FrameValues::kUnknown);
+  const std::vector<std::uint32_t> marked = {0, 1, 4711, 50'000, kPlotted - 1};
   for (const std::uint32_t frame : marked) marks.set(frame, 1);
-  const unsigned level = plotLevel(kFrames / 800.0);
+  const unsigned level = plotLevel(kPlotted / 800.0);
   std::set<std::uint32_t> seen;
-  for (std::uint32_t block = 0; block <= (kFrames - 1) >> level; ++block) {
+  for (std::uint32_t block = 0; block <= (kPlotted - 1) >> level; ++block) {
     if (marks.block(level, block).known()) seen.insert(block);
   }
   std::set<std::uint32_t> wanted;
   for (const std::uint32_t frame : marked) wanted.insert(frame >> level);
   EXPECT_EQ(seen, wanted);
-  EXPECT_FALSE(marks.block(level, kFrames).known());
+  EXPECT_FALSE(marks.block(level, kPlotted).known());
   EXPECT_TRUE(marks.block(30, 0).known());
 }
 

@@ -11,9 +11,28 @@ TEST(Preferences, ComeBackAsTheyWere) {
   const TemporaryDirectory directory;
   Preferences preferences{.dark = false, .scale = 1.5, .window_width = 900, .left = 222};
   preferences.tabs["left"] = "Algorithms";
+  preferences.areas["Bodies"] = "bottom";
+  preferences.hidden = {"Batch"};
+  preferences.folders["Open"] = "/tmp";
   preferences.remember("/tmp/a \"b\".aabbs");
   savePreferences(directory / "deep/er/inspector.json", preferences);
   EXPECT_EQ(loadPreferences(directory / "deep/er/inspector.json"), preferences);
+}
+
+TEST(Preferences, AreSavedSoonAfterTheyHaveChanged) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory / "inspector.json";
+  PreferencesFile file(path, {});
+  Preferences now{.dark = false};
+  file.update(now, 0.9);
+  now.left = 250;  // by a drag, in every picture
+  EXPECT_FALSE(std::filesystem::exists(path));
+  file.update(now, 0.2);
+  EXPECT_EQ(loadPreferences(path), now);
+  std::filesystem::remove(path);
+  file.update(now, 100);
+  file.save(now);
+  EXPECT_FALSE(std::filesystem::exists(path)) << "nothing has changed since";
 }
 
 TEST(Preferences, WhatCannotBeReadIsTheDefault) {

@@ -65,10 +65,11 @@ class DuelPanel final : public Panel {
     ImGui::SameLine();
     ui.faint("s at most");
     if (report.state == TaskState::idle) return;
-    ImGui::SameLine();
-    ui.faint(fmt::format("{}: {} in {}", kTaskStates.nameOf(report.state),
-                         counted(report.result.rounds(), "round"),
-                         waitingTime(report.result.seconds)));
+    const std::string rounds =
+        fmt::format("{}: {} in {}", kTaskStates.nameOf(report.state),
+                    counted(report.result.rounds(), "round"), waitingTime(report.result.seconds));
+    Ui::sameLineIfFits(ImGui::CalcTextSize(rounds.c_str()).x);
+    ui.faint(rounds);
     ui.note("rounds");
   }
 

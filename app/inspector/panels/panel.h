@@ -59,7 +59,7 @@ class SummaryThrottle {
   double next_ = 0;  ///< seconds of the user interface
 };
 
-/// Lays out buttons of equal width, `count` per row.
+/// Lays out buttons of equal width, `count` per row, or fewer if their labels need more.
 class ButtonRow {
  public:
   ButtonRow(Ui& ui, int count);

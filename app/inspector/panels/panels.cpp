@@ -42,8 +42,10 @@ ButtonRow::ButtonRow(Ui& ui, int count) : ui_(ui), count_(count) {
 }
 
 bool ButtonRow::button(const char* label, const char* tooltip, bool enabled) {
-  if (drawn_++ % count_ != 0) ImGui::SameLine();
-  return ui_.button(label, tooltip, width_, enabled);
+  const float width = std::max(width_, Ui::buttonWidth(label));
+  // A long label may need a line of its own.
+  if (drawn_++ % count_ != 0) Ui::sameLineIfFits(width);
+  return ui_.button(label, tooltip, width, enabled);
 }
 
 #define PANEL(name)            \

@@ -37,6 +37,7 @@ void Document::load(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
   editor = scenes::SceneEditor(std::move(scene));
   path_ = std::move(path);
   unsaved_ = unsaved;
+  ++loads_;
   scene_ = 0;
   show();
   notices_.raisePanel("Author");

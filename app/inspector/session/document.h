@@ -55,6 +55,8 @@ class Document {
   [[nodiscard]] std::string title() const {
     return path_.empty() ? editor.scene().name : path_.filename().string();
   }
+  /// Number of scenes loaded so far.
+  [[nodiscard]] std::uint64_t loads() const { return loads_; }
   /// Whether there are unsaved changes.
   [[nodiscard]] bool isModified() const { return unsaved_ || editor.isModified(); }
   /// Creates a simulation of a copy of the scene. Throws InputError. O(bodies).
@@ -124,6 +126,7 @@ class Document {
   Notices& notices_;
   Jobs& jobs_;
   std::filesystem::path path_;
+  std::uint64_t loads_ = 0;
   bool unsaved_ = false;  ///< the loaded scene differs from its file
   std::size_t chosen_brush_ = 0;
   std::unique_ptr<scenes::Brush> brush_;

@@ -18,6 +18,7 @@ namespace broadmark {
 namespace fs = std::filesystem;
 
 void Session::open(const fs::path& path) {
+  if (isLibraryFile(path)) return plugins.load(path);
   notices.catchErrors([&] {
     OpenedSource opened = openSource(path.string(), {.algorithms = tracks.algorithms()});
     if (opened.results) {
@@ -54,7 +55,11 @@ void Session::open(Plan plan) {
     showResults(unchosen->file, std::move(unchosen->results));
     notices.on_file_used(unchosen->file);
   }
-  if (!plan.entries.empty()) openEntry(std::move(plan.entries.front()), DocumentStart::in_motion);
+  if (plan.entries.empty()) return;
+  // A scene opens for editing, unless one of its later frames is asked for.
+  PlanEntry& entry = plan.entries.front();
+  const bool at_rest = !plan.request.frame && !entry.known;
+  openEntry(std::move(entry), at_rest ? DocumentStart::at_rest : DocumentStart::in_motion);
 }
 
 void Session::openEntry(PlanEntry entry, DocumentStart start) {

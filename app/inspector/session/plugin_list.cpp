@@ -99,15 +99,21 @@ void PluginList::load(const fs::path& file) {
       throw InputError(
           fmt::format("{}: scripts may not load algorithms: use --plugin", file.string()));
     }
-    const std::string plugin = pluginOf(file);
-    watch(plugin);
-    const std::vector<Algorithm> loaded = algorithmsIn(plugin);
-    tracks_.replaceAlgorithms(plugin, loaded);
-    if (loaded.size() == 1) tracks_.add(loaded.front().id);
-    notices_.setStatus(
-        fmt::format("{}: {}", file.filename().string(), counted(loaded.size(), "algorithm")));
+    add(file);
     notices_.raisePanel("Algorithms");
   });
+}
+
+void PluginList::loadShipped(const std::string& name) { add(shippedPlugin(name)); }
+
+void PluginList::add(const fs::path& file) {
+  const std::string plugin = pluginOf(file);
+  watch(plugin);
+  const std::vector<Algorithm> loaded = algorithmsIn(plugin);
+  tracks_.replaceAlgorithms(plugin, loaded);
+  if (loaded.size() == 1) tracks_.add(loaded.front().id);
+  notices_.setStatus(
+      fmt::format("{}: {}", file.filename().string(), counted(loaded.size(), "algorithm")));
 }
 
 void PluginList::reloadRebuilt(const RunProgress& progress) {

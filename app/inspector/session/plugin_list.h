@@ -15,6 +15,9 @@
 
 namespace broadmark {
 
+/// Whether a file is named like a shared library.
+inline bool isLibraryFile(const std::filesystem::path& file) { return file.extension() == ".so"; }
+
 class PluginList {
  public:
   /// Watches the plug-ins of the available algorithms. The arguments must outlive this object.
@@ -23,6 +26,8 @@ class PluginList {
   /// Loads the algorithms of a plug-in, a program (external.md), or a log of pairs; adds a single
   /// one as a track. Reports errors.
   void load(const std::filesystem::path& file);
+  /// The same for a plug-in that ships with the program. Throws InputError.
+  void loadShipped(const std::string& name);
   /// Call once per picture: loads plug-ins again that were rebuilt. Their tracks run all frames
   /// again.
   void reloadRebuilt(const RunProgress& progress);
@@ -44,6 +49,7 @@ class PluginList {
     TrackReport before;
   };
 
+  void add(const std::filesystem::path& file);
   static Stamp stampOf(const std::string& plugin);
   void watch(const std::string& plugin);
   /// Throws InputError, also if there are none.

@@ -27,7 +27,12 @@ void FileDialog::ask(Request request) {
   std::error_code none;
   const bool is_directory = fs::is_directory(suggestion, none);
   name_ = is_directory ? "" : suggestion.filename().string();
-  const fs::path start = is_directory ? suggestion : suggestion.parent_path();
+  fs::path start = is_directory ? suggestion : suggestion.parent_path();
+  const auto last = folders_.find(request_.title);
+  if (last != folders_.end() && (start.empty() || request_.purpose == Purpose::open)) {
+    if (last->second != start) name_ = request_.purpose == Purpose::open ? "" : name_;
+    start = last->second;
+  }
   enter(start.empty() || !fs::is_directory(start, none) ? fs::current_path(none) : start);
 }
 
@@ -42,12 +47,7 @@ void FileDialog::enter(const fs::path& directory) {
     std::error_code unknown;
     Entry entry{.name = it->path().filename().string(), .is_directory = it->is_directory(unknown)};
     if (entry.name.starts_with('.')) continue;
-    const bool listed = entry.is_directory ||
-                        (request_.purpose != Purpose::directory &&
-                         (request_.extensions.empty() ||
-                          std::ranges::find(request_.extensions, it->path().extension().string()) !=
-                              request_.extensions.end()));
-    if (!listed) continue;
+    if (!entry.is_directory && !isListed(it->path())) continue;
     if (!entry.is_directory) entry.bytes = it->file_size(unknown);
     entries_.push_back(std::move(entry));
   }
@@ -55,6 +55,15 @@ void FileDialog::enter(const fs::path& directory) {
   std::ranges::sort(entries_, [](const Entry& a, const Entry& b) {
     return a.is_directory != b.is_directory ? a.is_directory : a.name < b.name;
   });
+}
+
+bool FileDialog::isListed(const fs::path& file) const {
+  if (request_.purpose == Purpose::directory) return false;
+  if (lists_all_) return true;
+  if (request_.listed) return request_.listed(file);
+  return request_.extensions.empty() ||
+         std::ranges::find(request_.extensions, file.extension().string()) !=
+             request_.extensions.end();
 }
 
 fs::path FileDialog::overwrittenBy(const fs::path& path) const {
@@ -93,6 +102,7 @@ void FileDialog::accept() {
     }
   }
   open_ = false;
+  folders_[request_.title] = directory_.string();
   request_.chosen(path.lexically_normal());
 }
 
@@ -119,6 +129,21 @@ void FileDialog::drawEntries(Ui& ui) {
   ImGui::EndChild();
 }
 
+void FileDialog::drawName(Ui& ui) {
+  // A file to save is named at once.
+  if (ImGui::IsWindowAppearing()) is_fresh_ = request_.purpose == Purpose::save;
+  if (ImGui::IsWindowAppearing() && is_fresh_) ImGui::SetKeyboardFocusHere();
+  const std::string before = name_;
+  if (ui.text("name", name_, "file name", ImGuiInputTextFlags_AutoSelectAll)) {
+    confirm_overwrite_ = false;
+  }
+  if (name_ != before || ImGui::IsMouseClicked(0)) is_fresh_ = false;
+  if (request_.purpose != Purpose::open || (request_.extensions.empty() && !request_.listed))
+    return;
+  ImGui::SameLine();
+  if (ui.checkbox("all files", lists_all_, "List files of other kinds, too")) enter(directory_);
+}
+
 void FileDialog::draw(Ui& ui) {
   if (!open_) return;
   const auto scope = ui.scope("File");
@@ -135,9 +160,9 @@ void FileDialog::draw(Ui& ui) {
   ImGui::PopID();
   if (typed) enter(path_text_);
   drawEntries(ui);
-  if (request_.purpose != Purpose::directory) {
-    if (ui.text("name", name_, "file name")) confirm_overwrite_ = false;
-  }
+  // Escape cancels typing first; a name that was only suggested is not being typed.
+  if (is_fresh_ && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) keep = false;
+  if (request_.purpose != Purpose::directory) drawName(ui);
   if (!failure_.empty()) {
     ui.coloured(confirm_overwrite_ ? ui.theme.warning : ui.theme.bad, failure_);
   } else {

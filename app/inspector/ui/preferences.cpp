@@ -33,6 +33,9 @@ void visitFields(Fields& preferences, const Visit& visit) {
   visit("right", preferences.right);
   visit("bottom", preferences.bottom);
   visit("tabs", preferences.tabs);
+  visit("areas", preferences.areas);
+  visit("hidden", preferences.hidden);
+  visit("folders", preferences.folders);
   visit("recent", preferences.recent);
 }
 
@@ -48,6 +51,8 @@ void Preferences::resetLayout() {
   right = defaults.right;
   bottom = defaults.bottom;
   tabs = defaults.tabs;
+  areas = defaults.areas;
+  hidden = defaults.hidden;
 }
 
 void Preferences::remember(const std::filesystem::path& file) {
@@ -100,6 +105,19 @@ void savePreferences(const std::filesystem::path& path, const Preferences& prefe
   std::error_code failed;
   std::filesystem::create_directories(path.parent_path(), failed);
   writeTextFile(path, formatPreferences(preferences));
+}
+
+void PreferencesFile::update(const Preferences& now, double seconds) {
+  constexpr double kDelaySeconds = 1;
+  changed_seconds_ = now == saved_ ? 0 : changed_seconds_ + seconds;
+  if (changed_seconds_ > kDelaySeconds) save(now);
+}
+
+void PreferencesFile::save(const Preferences& now) {
+  if (now == saved_) return;
+  saved_ = now;
+  changed_seconds_ = 0;
+  savePreferences(path_, now);
 }
 
 }  // namespace broadmark

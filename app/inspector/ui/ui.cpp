@@ -4,26 +4,20 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
-#include <type_traits>
 
 #include "broadmark/statistics/statistics.h"
-#include "inspector/ui/terms.h"
 
 namespace broadmark {
 namespace {
 
 /// Width of an input as a share of its panel; the label gets the rest.
 constexpr float kInputShare = 0.52F;
-constexpr float kVectorShare = 0.7F;      // of the width, for three numbers in a row
-constexpr float kTooltipDelay = 0.45F;    // seconds
-constexpr std::size_t kBins = 48;         // of a histogram
-constexpr std::size_t kShortHeading = 9;  // characters; a longer one gets two lines
+constexpr float kTooltipDelay = 0.45F;  // seconds
+constexpr std::size_t kBins = 48;       // of a histogram
 
 /// Returns the name in a label: "Add" in "Add##popup", "speed" in "##speed" or "Pause###speed".
 std::string_view nameOf(std::string_view label) {
@@ -64,19 +58,6 @@ std::string fittingText(std::string text, float max_width, ImFont* font) {
     text.pop_back();
   }
   return text + "…";
-}
-
-float widthOfWholeColumns(const char* table, int always) {
-  const float available = ImGui::GetContentRegionAvail().x;
-  const ImGuiTable* const last = ImGui::TableFindByID(ImGui::GetID(table));
-  if (last == nullptr) return available;
-  float whole = last->InnerWindow->ScrollbarY ? ImGui::GetStyle().ScrollbarSize : 0;
-  for (int column = 0; column < last->ColumnsCount; ++column) {
-    const float width = last->Columns[column].MaxX - last->Columns[column].MinX;
-    if (column >= always && whole + width > available) return whole;
-    whole += width;
-  }
-  return available;
 }
 
 Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
@@ -128,12 +109,15 @@ void Ui::note(std::string_view label) {
   // Only the visible part of a widget can be pressed.
   ImRect rect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   const bool visible = ImGui::IsItemVisible();
+  const float right = rect.Max.x;
   if (visible) rect.ClipWithFull(ImGui::GetCurrentWindowRead()->ClipRect);
   const bool disabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0;
   places_[name] = {.min = rect.Min,
                    .max = rect.Max,
                    .enabled = !disabled,
-                   .visible = visible && rect.GetWidth() >= 1 && rect.GetHeight() >= 1};
+                   .visible = visible && rect.GetWidth() >= 1 && rect.GetHeight() >= 1,
+                   .cut = visible && GImGui->CurrentTable == nullptr &&
+                          right > rect.Max.x + ImGui::GetStyle().ItemSpacing.x};
 }
 
 void Ui::noteAt(std::string_view name, ImVec2 min, ImVec2 max) {
@@ -157,8 +141,21 @@ void Ui::tooltip(const char* text) {
   ImGui::EndTooltip();
 }
 
-void Ui::setInputWidth() const {
+void Ui::setInputWidth() {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * kInputShare);
+}
+
+void Ui::setListWidth(const char* label, const char* shown) {
+  const float available = ImGui::GetContentRegionAvail().x;
+  const float needed = buttonWidth(shown) + ImGui::GetFrameHeight();
+  const float room = available - ImGui::CalcTextSize(label, nullptr, true).x -
+                     ImGui::GetStyle().ItemInnerSpacing.x;
+  const float usual = available * kInputShare;
+  ImGui::SetNextItemWidth(std::max(usual, std::min(needed, room)));
+}
+
+float Ui::buttonWidth(const char* label) {
+  return ImGui::CalcTextSize(label, nullptr, true).x + 2 * ImGui::GetStyle().FramePadding.x;
 }
 
 bool Ui::registered(bool acted, const char* label, const char* tip) {
@@ -170,6 +167,7 @@ bool Ui::registered(bool acted, const char* label, const char* tip) {
 bool Ui::button(const char* label, const char* tip, float width, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = registered(ImGui::Button(label, {width, 0}), label, tip);
+  if (buttonWidth(label) > ImGui::GetItemRectSize().x + 1) places_[fullName(label)].cut = true;
   ImGui::EndDisabled();
   return pressed;
 }
@@ -196,16 +194,20 @@ bool Ui::checkbox(const char* label, bool& value, const char* tip, bool enabled)
 
 bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
                const char* tip, float width) {
+  const char* shown = chosen < options.size() ? options[chosen].c_str() : "";
   if (width > 0) {
     ImGui::SetNextItemWidth(width);
   } else {
-    setInputWidth();
+    setListWidth(label, shown);
   }
-  const char* shown = chosen < options.size() ? options[chosen].c_str() : "";
-  const bool open = ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge);
+  const float room =
+      ImGui::CalcItemWidth() - ImGui::GetFrameHeight() - 2 * ImGui::GetStyle().FramePadding.x;
+  const std::string preview = fittingText(shown, room);
+  const bool open = ImGui::BeginCombo(label, preview.c_str(), ImGuiComboFlags_HeightLarge);
   note(label);
   if (!open) {
-    tooltip(tip);
+    const bool is_whole = preview == shown || tip == nullptr;
+    tooltip(is_whole ? tip : fmt::format("{}\n{}", shown, tip).c_str());
     return false;
   }
   bool changed = false;
@@ -244,86 +246,6 @@ bool Ui::selectableLine(const char* label, bool selected, std::string_view right
   return pressed;
 }
 
-bool Ui::text(const char* label, std::string& value, const char* hint) {
-  setInputWidth();
-  glyphs.request(value);
-  ImGui::InputTextWithHint(label, hint, &value);
-  note(label);
-  return ImGui::IsItemDeactivatedAfterEdit();
-}
-
-template <class Number>
-bool Ui::inputNumber(const char* label, std::string_view name, Number& value, Number min,
-                     Number max, const char* tip) {
-  constexpr bool kWhole = std::is_integral_v<Number>;
-  Number entered = value;
-  ImGui::InputScalar(label, kWhole ? ImGuiDataType_S64 : ImGuiDataType_Double, &entered, nullptr,
-                     nullptr, kWhole ? "%lld" : "%.6g");
-  note(name);
-  tooltip(tip);
-  // A number may be out of range while it is typed.
-  if (ImGui::IsItemActive()) {
-    value = entered;
-    return false;
-  }
-  const bool in_range = value >= min && value <= max;  // false for NaN
-  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || !in_range;
-  if (!changed) return false;
-  value = entered >= min ? std::min(entered, max) : min;
-  if (value != entered && on_correction) {
-    on_correction(
-        fmt::format("{}: {} is out of range {} to {}; using {}", name, entered, min, max, value));
-  }
-  return true;
-}
-
-bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
-                 const char* tip) {
-  setInputWidth();
-  return inputNumber(label, label, value, min, max, tip);
-}
-
-bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
-  setInputWidth();
-  return inputNumber(label, label, value, min, max, tip);
-}
-
-bool Ui::entry(const char* name, double& value, double min, double max, const char* tip) {
-  return inputNumber(fmt::format("##{}", name).c_str(), name, value, min, max, tip);
-}
-
-bool Ui::vector(const char* label, std::array<double, 3>& value, double min, double max,
-                const char* tip) {
-  constexpr const char* kComponents[] = {"x", "y", "z"};
-  const float gap = ImGui::GetStyle().ItemInnerSpacing.x / 2;
-  // Three numbers are wider than other inputs.
-  const float width = std::floor((ImGui::GetContentRegionAvail().x * kVectorShare - 2 * gap) / 3);
-  bool changed = false;
-  ImGui::PushID(label);
-  for (std::size_t axis = 0; axis < value.size(); ++axis) {
-    if (axis > 0) ImGui::SameLine(0, gap);
-    ImGui::SetNextItemWidth(std::max(width, 1.0F));
-    changed |=
-        inputNumber(fmt::format("##{}", kComponents[axis]).c_str(),
-                    fmt::format("{} {}", label, kComponents[axis]), value[axis], min, max, tip);
-  }
-  ImGui::PopID();
-  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-  ImGui::TextUnformatted(label);
-  return changed;
-}
-
-bool Ui::slider(const char* label, int& value, int min, int max) {
-  // SliderInt's grab is as wide as a step: with few steps it would fill half the slider.
-  auto real = static_cast<float>(value);
-  const bool changed =
-      ImGui::SliderFloat(label, &real, static_cast<float>(min), static_cast<float>(max), "",
-                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
-  value = static_cast<int>(std::lround(real));
-  note(label);
-  return changed;
-}
-
 bool Ui::menuItem(const char* label, const char* shortcut, bool selected, bool enabled) {
   return registered(ImGui::MenuItem(label, shortcut, selected, enabled), label);
 }
@@ -333,52 +255,6 @@ bool Ui::beginMenu(const char* label, bool enabled) {
   // Inside the menu, the last item is not its title.
   if (!open) note(label);
   return open;
-}
-
-bool Ui::parameter(const Parameter& parameter) {
-  const std::string name(parameter.name);
-  const std::string tip = fmt::format("{}\n{}", parameter.doc, parameterRange(parameter));
-  if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
-    return checkbox(name.c_str(), **flag, tip.c_str());
-  }
-  const auto with_unit = [&](bool changed) {
-    const std::string_view unit = parameterUnit(parameter);
-    if (unit.empty()) return changed;
-    ImGui::SameLine();
-    // Without room for the unit, only the tooltip shows it.
-    const ImVec2 extent = ImGui::CalcTextSize(unit.data(), unit.data() + unit.size());
-    if (ImGui::GetContentRegionAvail().x >= extent.x) {
-      faint(unit);
-    } else {
-      ImGui::NewLine();
-    }
-    return changed;
-  };
-  if (std::int64_t* const* whole = std::get_if<std::int64_t*>(&parameter.value)) {
-    return with_unit(integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
-                             static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)),
-                             tip.c_str()));
-  }
-  if (double* const* real = std::get_if<double*>(&parameter.value)) {
-    return with_unit(number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str()));
-  }
-  if (Choice* const* choice = std::get_if<Choice*>(&parameter.value)) {
-    const auto& options = (*choice)->options;
-    auto chosen =
-        static_cast<std::size_t>(std::ranges::find(options, (*choice)->value) - options.begin());
-    if (!combo(name.c_str(), chosen, options, tip.c_str())) return false;
-    (*choice)->value = options[chosen];
-    return true;
-  }
-  const bool changed = text(name.c_str(), *std::get<std::string*>(parameter.value));
-  tooltip(tip.c_str());
-  return changed;
-}
-
-bool Ui::parameters(Parametrised& object) {
-  bool changed = false;
-  object.visitParameters([&](const Parameter& p) { changed |= parameter(p); });
-  return changed;
 }
 
 void Ui::placeInMiddle(ImVec2 size) const {
@@ -444,73 +320,6 @@ void Ui::line(std::string_view left, std::string_view right, Rgb right_colour) {
   plain(shown);
   if (shown != left) tooltip(std::string(left).c_str());
   rightAligned(right, right_colour);
-}
-
-bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, int always,
-                    float height) {
-  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                     ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
-                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_Sortable |
-                                     ImGuiTableFlags_SortTristate;
-  if (!ImGui::BeginTable(name, static_cast<int>(columns.size()), kFlags,
-                         {widthOfWholeColumns(name, always), height})) {
-    return false;
-  }
-  ImGui::TableSetupScrollFreeze(1, 1);
-  for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
-  headings(columns);
-  return true;
-}
-
-void Ui::headings(const std::vector<std::string>& names) {
-  const auto inside = scope("by");
-  // In two lines, because the numbers below are shorter.
-  std::vector<std::string> labels = names;
-  float height = 0;
-  for (std::string& label : labels) {
-    const std::size_t gap = label.size() < kShortHeading ? label.npos : label.find_last_of(" _");
-    if (gap != label.npos) label[gap] = '\n';
-    height = std::max(height, ImGui::CalcTextSize(label.c_str()).y);
-  }
-  // The same height whichever columns are visible: the rows must not move when one is scrolled.
-  ImGui::TableNextRow(ImGuiTableRowFlags_Headers, height + 2 * ImGui::GetStyle().CellPadding.y);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
-    ImGui::TableHeader(fmt::format("{}###{}", labels[i], names[i]).c_str());
-    note(names[i]);
-    tooltip(termDoc(names[i]));
-  }
-}
-
-std::vector<std::size_t> Ui::sortedRows(
-    std::size_t count, const std::function<SortKey(std::size_t row, std::size_t column)>& key) {
-  std::vector<std::size_t> rows(count);
-  std::iota(rows.begin(), rows.end(), 0);
-  const ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();
-  if (specs == nullptr || specs->SpecsCount == 0) return rows;
-  const ImGuiTableColumnSortSpecs& by = specs->Specs[0];
-  const auto key_of = [&](std::size_t row) {
-    return key(row, static_cast<std::size_t>(by.ColumnIndex));
-  };
-  if (by.SortDirection == ImGuiSortDirection_Descending) {
-    std::ranges::stable_sort(rows, std::ranges::greater(), key_of);
-  } else {
-    std::ranges::stable_sort(rows, {}, key_of);
-  }
-  return rows;
-}
-
-void Ui::cell(std::string_view words) { cell(words, theme.text); }
-
-void Ui::cell(std::string_view words, Rgb rgb) {
-  ImGui::TableNextColumn();
-  coloured(rgb, words);
-}
-
-void Ui::valueRow(const char* name, std::string_view value) {
-  faint(name);
-  ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
-  plain(value);
 }
 
 void Ui::plain(std::string_view words) {

@@ -28,6 +28,7 @@ struct WidgetPlace {
   ImVec2 max;
   bool enabled = true;
   bool visible = true;  ///< not scrolled or clipped away
+  bool cut = false;     ///< a part on the right is clipped away, outside of tables, which scroll
 };
 
 ImVec4 colourVector(Rgb rgb, float alpha = 1);
@@ -63,6 +64,8 @@ class Ui {
   /// Whether Enter was pressed, on the keypad or not.
   [[nodiscard]] static bool entered();
 
+  /// The width of a button with this label.
+  [[nodiscard]] static float buttonWidth(const char* label);
   bool button(const char* label, const char* tooltip = nullptr, float width = 0,
               bool enabled = true);
   /// A button that stays pressed while `on`.
@@ -77,7 +80,8 @@ class Ui {
   /// A selectable with right-aligned text; a label that does not fit is truncated.
   bool selectableLine(const char* label, bool selected, std::string_view right, Rgb right_colour,
                       const char* tooltip = nullptr);
-  bool text(const char* label, std::string& value, const char* hint = "");
+  bool text(const char* label, std::string& value, const char* hint = "",
+            ImGuiInputTextFlags flags = 0);
   /// Numbers are committed by Enter, Tab or a click elsewhere, and clamped to their range.
   bool integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
                const char* tooltip = nullptr);
@@ -95,7 +99,7 @@ class Ui {
   bool beginMenu(const char* label, bool enabled = true);
   /// Draws the widget for the type of a parameter, with a tooltip.
   bool parameter(const Parameter& parameter);
-  /// Draws all parameters of an object. Returns whether one changed.
+  /// Draws all parameters of an object, groups folded. Returns whether one changed.
   bool parameters(Parametrised& object);
 
   /// Centres the next window, with this size in units (0: fits its contents) or the screen's.
@@ -171,7 +175,9 @@ class Ui {
   bool inputNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
                    const char* tooltip);
   /// Sets the width of the next input, with room for its label on the right.
-  void setInputWidth() const;
+  static void setInputWidth();
+  /// The same for a list: wider, if it shows a long text and the label leaves room for it.
+  static void setListWidth(const char* label, const char* shown);
 
   std::string scope_;
   std::map<std::string, WidgetPlace> places_;
