@@ -61,7 +61,10 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
   makeCommands();
 }
 
-Inspector::~Inspector() { ImGui::DestroyContext(context_); }
+Inspector::~Inspector() {
+  if (closing_) autosave_.discard();
+  ImGui::DestroyContext(context_);
+}
 
 void Inspector::applyStyle() {
   const float scale =
@@ -102,7 +105,7 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
     build(progress, width, height, seconds);
     progress_ = nullptr;
   });
-  session_.notices.catchErrors([&] { autosave_.update(session_.document, seconds, closing_); });
+  session_.notices.catchErrors([&] { autosave_.update(session_.document, seconds); });
   ImGui::Render();
   bind();
   const ImVec4 back = ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg);

@@ -144,7 +144,8 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
       const auto now = std::chrono::steady_clock::now();
       const double seconds = std::chrono::duration<double>(now - last_draw).count();
       const bool needs_redraw = inspector.needsRedraw() || script || !window.input().empty();
-      const double idle_seconds = inspector.animationSeconds().value_or(kIdleSeconds);
+      const double idle_seconds =
+          std::max(inspector.animationSeconds().value_or(kIdleSeconds), kPictureSeconds);
       window.poll(std::max((needs_redraw ? kPictureSeconds : idle_seconds) - seconds, 1e-4));
       for (const fs::path& file : window.consumeDrops()) inspector.session().open(file);
       if (window.closing()) {
@@ -157,13 +158,13 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
       }
       if (window.width() < 1 || window.height() < 1) continue;  // minimised
       last_draw = std::chrono::steady_clock::now();
-      inspector.draw(window.input(), window.width(), window.height(),
-                     std::chrono::duration<double>(last_draw - now).count() + seconds, bind);
+      const double elapsed = std::chrono::duration<double>(last_draw - now).count() + seconds;
+      inspector.draw(window.input(), window.width(), window.height(), elapsed, bind);
       writePictures(inspector, movie,
                     [&] { return readPicture(gl, window.width(), window.height()); });
       preferences = inspector.preferences();
       setWindowSize(preferences, window);
-      if (!script) report([&] { stored.update(preferences, seconds); });
+      if (!script) report([&] { stored.update(preferences, elapsed); });
       window.setCursor(ImGui::GetMouseCursor());
       window.swap();
     }

@@ -58,7 +58,8 @@ void Inspector::focusNextArea(int step) {
 
 void Inspector::enterPanel(const PanelTab& panel) {
   session_.notices.raisePanel(panel.name);
-  panel_to_focus_ = panel.name;
+  // A click in a menu leaves the keys to the view.
+  if (!ImGui::IsMouseReleased(0)) panel_to_focus_ = panel.name;
 }
 
 void Inspector::focusIfRequested(std::size_t area) {

@@ -62,7 +62,8 @@ class WindowTest : public EndToEnd {
     program_.emplace(
         directory_, arguments,
         ProgramEnvironment{.environment = {{"DISPLAY", screen.name()},
-                                           {"XDG_CONFIG_HOME", file("config").string()}}});
+                                           {"XDG_CONFIG_HOME", file("config").string()},
+                                           {"XDG_STATE_HOME", file("state").string()}}});
   }
 
   /// Waits for the script's file of widget positions, and returns the middle of a widget.
@@ -176,6 +177,43 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
   EXPECT_EQ(run({"verify", "mine.aabbs"}).status, 0);
   EXPECT_THAT(readFile(file("config/broadmark/inspector.json")),
               ::testing::HasSubstr("mine.aabbs"));
+}
+
+TEST_F(WindowTest, AKilledWindowLosesNeitherSettingsNorAnUnsavedScene) {
+  const Screen screen;
+  ASSERT_FALSE(screen.name().empty()) << "Xvfb does not start";
+  writeFile(file("scene.json"), R"({
+"schema": "broadmark-scene/1",
+"name": "Hands",
+"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
+"bodies": [{"box": [4, 4, 4], "position": [0, 0, 0]}]
+})");
+  start(screen, {"scene.json"});
+  const auto appears = [&](const fs::path& path, const std::string& text) {
+    return program_->waitUntil(
+        [&] { return fs::exists(path) && readFile(path).find(text) != std::string::npos; });
+  };
+  ASSERT_TRUE(appears(file("config/broadmark/inspector.json"), "scene.json"));
+  press(screen, "ctrl+a");
+  press(screen, "ctrl+d");
+  ASSERT_TRUE(appears(file("state/broadmark/scenes/scene-0.json"), "Hands"));
+  program_->signal(SIGKILL);
+  program_->wait();
+
+  writeFile(file("script.txt"),
+            "expect recoverable = 1\n"
+            "click \"Start/Not saved/scene.json\"\n"
+            "expect author.bodies = 2\n"
+            "expect author.path ~ scene.json\n"
+            "expect author.modified = yes\n"
+            "click Author/Save\n"
+            "expect author.modified = no\n"
+            "click File\n"
+            "click File/Quit\n");
+  start(screen, {"--script", "script.txt"});
+  const ProgramResult ended = program_->wait();
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_FALSE(fs::exists(file("state/broadmark/scenes/scene-0.json")));
 }
 
 TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {

@@ -35,25 +35,25 @@ class AutosaveTest : public testing::Test {
 TEST_F(AutosaveTest, KeepsWhatIsNotSavedUntilItIs) {
   Autosave autosave(folder);
   document.load({.name = "Marbles"});
-  autosave.update(document, kLongSeconds, false);
+  autosave.update(document, kLongSeconds);
   EXPECT_FALSE(std::filesystem::exists(folder)) << "nothing has changed";
   addBody(document);
-  autosave.update(document, 0.1, false);
+  autosave.update(document, 0.1);
   EXPECT_FALSE(std::filesystem::exists(folder)) << "not at every key";
-  autosave.update(document, kLongSeconds, false);
+  autosave.update(document, kLongSeconds);
   ASSERT_EQ(filesIn(folder), 1U);
   ASSERT_TRUE(document.save(directory / "marbles.json"));
-  autosave.update(document, 0, false);
+  autosave.update(document, 0);
   EXPECT_EQ(filesIn(folder), 0U);
 }
 
-TEST_F(AutosaveTest, IsDiscardedWithTheChanges) {
+TEST_F(AutosaveTest, IsDiscardedOnDemand) {
   Autosave autosave(folder);
   document.load({});
   addBody(document);
-  autosave.update(document, kLongSeconds, false);
+  autosave.update(document, kLongSeconds);
   ASSERT_EQ(filesIn(folder), 1U);
-  autosave.update(document, 0, true);
+  autosave.discard();
   EXPECT_EQ(filesIn(folder), 0U);
 }
 
@@ -62,13 +62,13 @@ TEST_F(AutosaveTest, IsRecoveredWithItsFileOnceItsProcessHasEnded) {
   addBody(document);
   {
     Autosave autosave(folder);
-    autosave.update(document, kLongSeconds, false);
+    autosave.update(document, kLongSeconds);
     EXPECT_TRUE(Autosave(folder).left().empty()) << "its process lives";
     // Another process keeps its scene beside it.
     Session other(builtinAlgorithms());
     other.document.load({.name = "Other"}, {}, true);
     Autosave beside(folder);
-    beside.update(other.document, kLongSeconds, false);
+    beside.update(other.document, kLongSeconds);
     EXPECT_EQ(filesIn(folder), 2U);
   }
   Session next(builtinAlgorithms());
@@ -83,7 +83,7 @@ TEST_F(AutosaveTest, IsRecoveredWithItsFileOnceItsProcessHasEnded) {
   EXPECT_EQ(autosave.left().size(), 1U);
   EXPECT_EQ(filesIn(folder), 2U) << "kept until it is saved";
   ASSERT_TRUE(next.document.save(next.document.path()));
-  autosave.update(next.document, 0, false);
+  autosave.update(next.document, 0);
   EXPECT_EQ(filesIn(folder), 1U);
 }
 
@@ -91,8 +91,8 @@ TEST_F(AutosaveTest, AFolderThatCannotBeWrittenIsReportedOnce) {
   writeTextFile(directory / "state", "a file");
   Autosave autosave(folder);
   document.load({}, {}, true);
-  EXPECT_THROW(autosave.update(document, kLongSeconds, false), InputError);
-  EXPECT_NO_THROW(autosave.update(document, kLongSeconds, false));
+  EXPECT_THROW(autosave.update(document, kLongSeconds), InputError);
+  EXPECT_NO_THROW(autosave.update(document, kLongSeconds));
 }
 
 class RecoveryTest : public InspectorTest {
@@ -104,7 +104,7 @@ class RecoveryTest : public InspectorTest {
     Session session(builtinAlgorithms());
     session.document.load({.name = "Marbles"});
     addBody(session.document);
-    Autosave(directory / "scenes").update(session.document, kLongSeconds, false);
+    Autosave(directory / "scenes").update(session.document, kLongSeconds);
     return directory / "scenes";
   }
 };

@@ -106,6 +106,19 @@ TEST_F(CommandsTest, TheFocusStaysInThePanelThatAKeyOpened) {
   }
 }
 
+TEST_F(CommandsTest, AClickInAMenuLeavesTheKeysToTheView) {
+  inspector.session().draft.simulate();
+  waitUntilIdle();
+  click("View");
+  waitUntilDrawn();
+  click("View menu/Results");
+  waitUntilDrawn();
+  EXPECT_EQ(value("panel.bottom"), "Results");
+  key(GLFW_KEY_RIGHT);
+  waitUntilIdle();
+  EXPECT_EQ(value("frame"), "1");
+}
+
 TEST_F(CommandsTest, PanelsAreHiddenAndShownAgain) {
   const float before = inspector.ui().find("Start/A pile")->max.x;
   for (const char* panel : {"Display", "Bodies", "Mismatches"}) {

@@ -187,12 +187,19 @@ class PanelsFit : public AllPanels, public testing::WithParamInterface<std::tupl
 
 TEST_P(PanelsFit, NoWidgetIsCutOff) {
   prepare();
-  for (const auto& panel : inspector.panels()) {
+  const auto expect_whole = [this](const PanelTab& panel) {
     pictureOf(panel);
     for (const auto& [name, place] : inspector.ui().places()) {
       if (!name.starts_with(panel.name)) continue;
       EXPECT_FALSE(place.cut) << name;
     }
+  };
+  for (const auto& panel : inspector.panels()) expect_whole(panel);
+  const auto scene = std::ranges::find(inspector.panels(), std::string_view("Scene"),
+                                       [](const PanelTab& panel) { return panel.name; });
+  for (const SceneListing& listing : builtinScenes()) {
+    session.draft.choose(listing.id);
+    expect_whole(*scene);
   }
 }
 

@@ -70,9 +70,9 @@ void Autosave::recover(const Left& left, Document& document) {
   std::erase_if(left_, [&](const Left& other) { return other.slot == own_->first; });
 }
 
-void Autosave::update(const Document& document, double seconds, bool closing) {
+void Autosave::update(const Document& document, double seconds) {
   if (folder_.empty() || isSandboxed()) return;
-  if (!document.isModified() || closing) return discard();
+  if (!document.isModified()) return discard();
   const State state{document.loads(), document.editor.revision(), document.path()};
   if (written_ == state) return;
   waited_seconds_ += seconds;

@@ -33,9 +33,10 @@ class Autosave {
   /// Opens such a scene, without confirmation. Throws InputError.
   void recover(const Left& left, Document& document);
 
-  /// Call once per picture. `closing`: the user has decided about unsaved changes. Throws
-  /// InputError, once.
-  void update(const Document& document, double seconds, bool closing);
+  /// Call once per picture. Throws InputError, once.
+  void update(const Document& document, double seconds);
+  /// Removes the copy: the user has decided about unsaved changes.
+  void discard();
 
  private:
   /// Identifies the written state.
@@ -52,7 +53,6 @@ class Autosave {
   [[nodiscard]] std::optional<FileDescriptor> lock(std::size_t slot) const;
   void claimSlot();
   void write(const Document& document);
-  void discard();
 
   std::filesystem::path folder_;
   std::vector<Left> left_;

@@ -102,6 +102,7 @@ void Session::loadSource(PlanEntry& entry, DocumentStart start) {
                       parameterOption(playback.reading.begin()->first)));
     }
     document.load(authored->document(), file);
+    if (!file.empty()) notices.on_file_used(file);
     if (start == DocumentStart::in_motion) document.simulate();
   } else if (source.simulation) {
     // The hash is not verified: it is known only after the last frame.

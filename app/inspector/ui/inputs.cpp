@@ -17,7 +17,7 @@ constexpr float kVectorShare = 0.7F;  // of the width, for three numbers in a ro
 }  // namespace
 
 bool Ui::text(const char* label, std::string& value, const char* hint, ImGuiInputTextFlags flags) {
-  setInputWidth();
+  setInputWidth(label);
   glyphs.request(value);
   ImGui::InputTextWithHint(label, hint, &value, flags);
   note(label);
@@ -51,12 +51,12 @@ bool Ui::inputNumber(const char* label, std::string_view name, Number& value, Nu
 
 bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
                  const char* tip) {
-  setInputWidth();
+  setInputWidth(label);
   return inputNumber(label, label, value, min, max, tip);
 }
 
 bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
-  setInputWidth();
+  setInputWidth(label);
   return inputNumber(label, label, value, min, max, tip);
 }
 

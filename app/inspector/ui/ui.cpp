@@ -16,8 +16,9 @@ namespace {
 
 /// Width of an input as a share of its panel; the label gets the rest.
 constexpr float kInputShare = 0.52F;
-constexpr float kTooltipDelay = 0.45F;  // seconds
-constexpr std::size_t kBins = 48;       // of a histogram
+constexpr float kMinInputShare = 0.28F;  // beside a long label
+constexpr float kTooltipDelay = 0.45F;   // seconds
+constexpr std::size_t kBins = 48;        // of a histogram
 
 /// Returns the name in a label: "Add" in "Add##popup", "speed" in "##speed" or "Pause###speed".
 std::string_view nameOf(std::string_view label) {
@@ -27,6 +28,18 @@ std::string_view nameOf(std::string_view label) {
   const std::size_t split = label.find("##");
   if (split == 0) return label.substr(2);
   return label.substr(0, split);
+}
+
+/// Width that an input's label leaves on the line.
+float roomBeside(const char* label) {
+  return ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(label, nullptr, true).x -
+         ImGui::GetStyle().ItemInnerSpacing.x;
+}
+
+/// Width of an input with this label.
+float usualInputWidth(const char* label) {
+  const float available = ImGui::GetContentRegionAvail().x;
+  return std::clamp(roomBeside(label), kMinInputShare * available, kInputShare * available);
 }
 
 /// Places the tooltip of the last item beside its window or, if that is wide, above the item: below
@@ -141,17 +154,11 @@ void Ui::tooltip(const char* text) {
   ImGui::EndTooltip();
 }
 
-void Ui::setInputWidth() {
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * kInputShare);
-}
+void Ui::setInputWidth(const char* label) { ImGui::SetNextItemWidth(usualInputWidth(label)); }
 
 void Ui::setListWidth(const char* label, const char* shown) {
-  const float available = ImGui::GetContentRegionAvail().x;
   const float needed = buttonWidth(shown) + ImGui::GetFrameHeight();
-  const float room = available - ImGui::CalcTextSize(label, nullptr, true).x -
-                     ImGui::GetStyle().ItemInnerSpacing.x;
-  const float usual = available * kInputShare;
-  ImGui::SetNextItemWidth(std::max(usual, std::min(needed, room)));
+  ImGui::SetNextItemWidth(std::max(usualInputWidth(label), std::min(needed, roomBeside(label))));
 }
 
 float Ui::buttonWidth(const char* label) {

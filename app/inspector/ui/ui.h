@@ -175,7 +175,7 @@ class Ui {
   bool inputNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
                    const char* tooltip);
   /// Sets the width of the next input, with room for its label on the right.
-  static void setInputWidth();
+  static void setInputWidth(const char* label);
   /// The same for a list: wider, if it shows a long text and the label leaves room for it.
   static void setListWidth(const char* label, const char* shown);
 

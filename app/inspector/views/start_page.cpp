@@ -153,7 +153,6 @@ bool StartPage::drawTile(Ui& ui, std::size_t index, ImVec2 size, float picture_h
   const bool pressed = ImGui::Button("##example", size);
   ImGui::PopID();
   ui.note(example.name);
-  ui.tooltip(example.doc);
   if (!ImGui::IsItemVisible()) return pressed;
   const ImVec2 from{corner.x + gap, corner.y + gap};
   const ImVec2 picture{std::max(size.x - 2 * gap, 1.0F), std::max(picture_height - gap, 1.0F)};
@@ -164,8 +163,9 @@ bool StartPage::drawTile(Ui& ui, std::size_t index, ImVec2 size, float picture_h
                 {0, 1}, {1, 0});
   const float top = from.y + picture.y + gap / 2;
   list.AddText({from.x, top}, colour(ui.theme.text), fittingText(example.name, picture.x).c_str());
-  list.AddText({from.x, top + ImGui::GetTextLineHeight()}, colour(ui.theme.faint),
-               fittingText(example.doc, picture.x).c_str());
+  const std::string doc = fittingText(example.doc, picture.x);
+  list.AddText({from.x, top + ImGui::GetTextLineHeight()}, colour(ui.theme.faint), doc.c_str());
+  if (doc != example.doc) ui.tooltip(example.doc);
   if (index == selected_) {
     list.AddRect(corner, {corner.x + size.x, corner.y + size.y}, colour(ui.theme.accent),
                  ImGui::GetStyle().FrameRounding, 0, 1.5F * ui.scale);
