@@ -99,6 +99,18 @@ std::vector<UserCommand> Inspector::fileCommands() {
              askExportTimings(formatFrameTable(session_.playback.scene(), progress_->tracks));
            },
        .enabled = [this] { return !progress_->tracks.empty(); }},
+      {.doc = "copy the tables in view, with tabs between cells",
+       .key = GLFW_KEY_C,
+       .ctrl = true,
+       .shift = true,
+       .menu = "File",
+       .label = "Copy tables",
+       .action =
+           [this] {
+             ui_.copyTables();
+             session_.notices.setStatus("copied: the tables in view");
+           },
+       .enabled = [this] { return ui_.hasTables(); }},
       {.doc = "save a screenshot",
        .key = GLFW_KEY_F12,
        .menu = "File",

@@ -1,7 +1,9 @@
 // Commands, panels and dialogs, through the real event queue.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 #include "broadmark/files.h"
@@ -103,6 +105,29 @@ TEST_F(CommandsTest, TheFocusStaysInThePanelThatAKeyOpened) {
     key(static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), held);
     for (int picture = 0; picture < 30 || !input.empty(); ++picture) draw();
     EXPECT_EQ(value("focus"), inspector.panels()[i].name);
+  }
+}
+
+TEST_F(CommandsTest, TablesInViewAreCopiedWithTabs) {
+  inspector.session().draft.simulate();
+  inspector.session().tracks.add("sap");
+  inspector.session().tracks.add("bf");
+  inspector.session().playback.goTo(1);
+  waitUntilIdle();
+  EXPECT_FALSE(inspector.ui().hasTables());
+  command("panel Results");
+  key(GLFW_KEY_C, {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_LEFT_SHIFT});
+  draw(2);
+  waitUntilDrawn();
+  std::istringstream copied(ImGui::GetClipboardText());
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(copied, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 3U) << ImGui::GetClipboardText();
+  EXPECT_THAT(lines[0], StartsWith("algorithm\tstatus\ttotal\tmean\tpairs\t"));
+  EXPECT_THAT(lines[1], StartsWith("sap\tok\t"));
+  EXPECT_THAT(lines[2], StartsWith("bf\tok\t"));
+  for (const std::string& line : lines) {
+    EXPECT_EQ(std::ranges::count(line, '\t'), std::ranges::count(lines[0], '\t')) << line;
   }
 }
 

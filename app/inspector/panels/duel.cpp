@@ -100,7 +100,7 @@ class DuelPanel final : public Panel {
       const DuelRank* rank = result.ranking.empty() ? nullptr : &result.ranking[row];
       drawSide(result, rank == nullptr ? row : rank->side, rank);
     }
-    ImGui::EndTable();
+    ui.endTable();
   }
 
   void drawSide(const DuelResult& result, std::size_t side, const DuelRank* rank) {

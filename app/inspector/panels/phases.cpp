@@ -206,7 +206,7 @@ class PhasesPanel final : public Panel {
       return means.seconds.at(indexOf(columns.at(column))).value_or(-1);
     });
     for (const std::size_t row : order_) drawRow(tracks[row], means_[row], columns);
-    ImGui::EndTable();
+    ui.endTable();
   }
 
   static std::size_t indexOf(const std::string& phase) {

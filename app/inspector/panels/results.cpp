@@ -29,7 +29,7 @@ class ResultsPanel final : public Panel {
       return sortKey(tracks[row], columns.at(column));
     });
     for (const std::size_t row : rows) drawTrack(tracks[row], colours[row]);
-    ImGui::EndTable();
+    ui.endTable();
   }
 
  private:

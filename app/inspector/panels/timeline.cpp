@@ -154,7 +154,7 @@ class TimelinePanel final : public Panel {
         ui.tooltip(fmt::format("and {} left out as disturbed", span.disturbed).c_str());
       }
     }
-    ImGui::EndTable();
+    ui.endTable();
   }
 
   [[nodiscard]] std::string valueText(double value) const {

@@ -42,7 +42,23 @@ bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, i
   ImGui::TableSetupScrollFreeze(1, 1);
   for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
   headings(columns);
+  begins_tables_ = in_table_ = true;
+  if (copies_tables_) {
+    copied_ += fmt::format("{}{}", copied_.empty() ? "" : "\n", fmt::join(columns, "\t"));
+  }
   return true;
+}
+
+void Ui::endTable() {
+  ImGui::EndTable();
+  in_table_ = false;
+  if (copies_tables_) copied_ += '\n';
+}
+
+void Ui::copyCell(std::string_view text) {
+  if (!copies_tables_ || !in_table_) return;
+  copied_ += ImGui::TableGetColumnIndex() == 0 ? '\n' : '\t';
+  copied_ += text.substr(0, text.find("##"));
 }
 
 void Ui::headings(const std::vector<std::string>& names) {
@@ -87,6 +103,7 @@ void Ui::cell(std::string_view words) { cell(words, theme.text); }
 
 void Ui::cell(std::string_view words, Rgb rgb) {
   ImGui::TableNextColumn();
+  copyCell(words);
   coloured(rgb, words);
 }
 

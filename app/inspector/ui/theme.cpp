@@ -13,7 +13,7 @@ namespace {
 /// The palette's source of a Dear ImGui colour.
 struct ColourUse {
   ImGuiCol_ target;
-  Rgb Palette::*source;
+  Rgb Palette::* source;
   float alpha = 1;
 };
 constexpr ColourUse kColourUses[] = {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "broadmark/statistics/statistics.h"
 
@@ -92,6 +93,10 @@ void Ui::beforePicture() {
 }
 
 void Ui::begin() {
+  if (!copied_.empty()) ImGui::SetClipboardText(copied_.c_str());
+  copied_.clear();
+  copies_tables_ = std::exchange(copy_requested_, false);
+  has_tables_ = std::exchange(begins_tables_, false);
   places_.clear();
   focus_.clear();
   const bool pressed = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
@@ -233,6 +238,7 @@ bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::st
 
 bool Ui::selectable(const char* label, bool selected, const char* tip, std::optional<Rgb> rgb) {
   const bool in_table = GImGui->CurrentTable != nullptr;
+  copyCell(label);
   ImGui::PushStyleColor(ImGuiCol_Text, colourVector(rgb.value_or(theme.text)));
   const bool pressed =
       ImGui::Selectable(label, selected, in_table ? ImGuiSelectableFlags_SpanAllColumns : 0);

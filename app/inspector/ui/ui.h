@@ -124,9 +124,14 @@ class Ui {
   /// Draws right-aligned text on the line of the last item.
   void rightAligned(std::string_view text, Rgb rgb);
   /// Begins a table with headings that explain their terms and sort its rows, see sortedRows(). If
-  /// it returns true, call ImGui::EndTable().
+  /// it returns true, call endTable().
   bool beginTable(const char* name, const std::vector<std::string>& columns, int always,
                   float height = 0);
+  void endTable();
+  /// Copies the tables of the next picture to the clipboard, with tabs between cells.
+  void copyTables() { copy_requested_ = true; }
+  /// Whether the last picture had a table.
+  [[nodiscard]] bool hasTables() const { return has_tables_; }
   /// Draws the row of headings with these names.
   void headings(const std::vector<std::string>& names);
   using SortKey = std::variant<double, std::string>;
@@ -179,12 +184,22 @@ class Ui {
   /// The same for a list: wider, if it shows a long text and the label leaves room for it.
   static void setListWidth(const char* label, const char* shown);
 
+  /// Adds a cell to the copied table.
+  void copyCell(std::string_view text);
+
   std::string scope_;
   std::map<std::string, WidgetPlace> places_;
   std::string revealed_;
   std::string focus_;
   bool escape_consumed_ = false;  ///< by a list or a text input open before the picture
   bool escaped_ = false;
+
+  bool has_tables_ = false;
+  bool begins_tables_ = false;  ///< in this picture
+  bool copy_requested_ = false;
+  bool copies_tables_ = false;  ///< in this picture
+  bool in_table_ = false;
+  std::string copied_;
 };
 
 /// Returns the text, truncated with "…" if wider than `max_width`. `font` null: the current font.

@@ -49,8 +49,8 @@ class AdaptedFrames : public IndexedFrames {
 
 // `reading`: reading options that are not at their defaults, as in results. Each adapter is named
 // after its option, and they apply in the order of the list in adapted_frames.cpp: "swept",
-// "widen", "periodic", "body_order". Other options are ignored. Boxes of a source that is periodic are wrapped in
-// any case.
+// "widen", "periodic", "body_order". Other options are ignored. Boxes of a source that is periodic
+// are wrapped in any case.
 
 /// The options among these that change boxes.
 ParameterValues adaptersIn(ParameterValues reading);
