@@ -128,11 +128,12 @@ void StartPage::drawExamples(Ui& ui, Session& session, float bottom) {
   for (const std::size_t some : {2, 3}) {
     if (width >= static_cast<float>(some) * (kMinTileWidth * ui.scale + gap)) columns = some;
   }
-  const auto rows = static_cast<float>((count + columns - 1) / columns);
+  const std::size_t rows = (count + columns - 1) / columns;
   const float tile_width =
       std::floor((width - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns));
   const float text_height = 2 * ImGui::GetTextLineHeight() + 2 * gap;
-  const float room = (ImGui::GetContentRegionAvail().y - bottom) / rows - text_height - gap;
+  const float row_height = (ImGui::GetContentRegionAvail().y - bottom) / static_cast<float>(rows);
+  const float room = row_height - text_height - gap;
   const float picture_height =
       std::floor(std::clamp(room, kMinPictureHeight * ui.scale, kMaxPictureShare * tile_width));
   handleKeys(session, columns);
