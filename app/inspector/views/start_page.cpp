@@ -37,8 +37,8 @@ void StartPage::Tile::advance(bool dark) {
   boxes.assign(now.begin(), now.end());
   camera = orbited(camera, kTurn, 0);
   const std::vector<Pair> pairs = sweptPairs(boxes, simulation->scene().filter);
-  const PairRun run = pairs;
-  const std::vector<std::uint32_t> overlaps = overlapCounts(boxes.size(), {&run, 1});
+  const PairRun runs[] = {pairs};
+  const std::vector<std::uint32_t> overlaps = overlapCounts(boxes.size(), runs);
   colourModes().front().colour({.boxes = boxes, .overlaps = overlaps, .dark = dark}, colouring);
   ++revision;
 }
