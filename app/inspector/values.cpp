@@ -75,7 +75,7 @@ void addSecond(Values& values, const Session& session, const RunProgress& progre
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";
   const PairComparison* comparison = progress.comparison.get();
-  const auto count = [&](const std::vector<Pair> PairComparison::*pairs) {
+  const auto count = [&](const std::vector<Pair> PairComparison::* pairs) {
     return comparison ? std::to_string((comparison->*pairs).size()) : "";
   };
   values["compare.both"] = comparison ? std::to_string(comparison->both) : "";

@@ -25,8 +25,8 @@ struct CaseOptions {
 };
 
 /// Returns the algorithms that match a selector (ids, families, globs, "all"), without duplicates,
-/// in the order of the selectors, then of `known`. A selector that is both an id and a family selects the id. Throws
-/// InputError, prefixed with `option`, for a selector without a match.
+/// in the order of the selectors, then of `known`. A selector that is both an id and a family
+/// selects the id. Throws InputError, prefixed with `option`, for a selector without a match.
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
                                         const std::vector<Algorithm>& known,
                                         std::string_view option);

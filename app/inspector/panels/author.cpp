@@ -69,7 +69,7 @@ class AuthorPanel final : public Panel {
   }
 
   template <class Value>
-  void set(bool entered, const char* verb, Value AuthoredBody::*property, const Value& value) {
+  void set(bool entered, const char* verb, Value AuthoredBody::* property, const Value& value) {
     edit(entered, [&](SceneEditor& editor) { editor.set(verb, property, value); });
   }
 

@@ -43,7 +43,7 @@ class ScenePanel final : public Panel {
     if (!parameters_.empty()) return;
     ui.faintParagraph(source_->origin == FrameOrigin::authored
                           ? "Its parameters are in the panel Author."
-                          : "Its parameters are unknown.");
+                          : "Parameters unknown.");
   }
 
   void drawDraft() {

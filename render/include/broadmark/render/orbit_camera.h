@@ -28,7 +28,7 @@ struct OrbitCamera {
 
 /// Standard views, with the same pivot and distance.
 enum class Direction { figure, front, back, left, right, top, bottom };
-inline constexpr NameTable kDirections{{NamedValue{Direction::figure, "figure"},
+inline constexpr NameTable kDirections{{NamedValue{Direction::figure, "default"},
                                         {Direction::front, "front"},
                                         {Direction::back, "back"},
                                         {Direction::left, "left"},

@@ -19,7 +19,6 @@ Pose transformedPose(const AuthoredBody&, const Transformation&);
 /// sphere stays a sphere and grows by the geometric mean of the factors, as its volume requires.
 Shape transformedShape(const AuthoredBody&, const Transformation&);
 
-
 /// A rotation as angles in degrees, about the world's axes x, y and z, in this order.
 Vec3 anglesOf(const Quaternion& rotation);
 Quaternion rotationBy(const Vec3& angles);
