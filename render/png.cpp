@@ -26,7 +26,7 @@ std::size_t bytesOf(const Picture& picture) {
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, const Picture& picture) {
+std::string encodePng(const Picture& picture) {
   std::string png;
   const auto append = [](void* context, void* data, int size) {
     static_cast<std::string*>(context)->append(static_cast<const char*>(data),
@@ -36,11 +36,15 @@ void writePng(const std::filesystem::path& path, const Picture& picture) {
       picture.width > 0 && picture.height > 0 && picture.rgba.size() == bytesOf(picture);
   if (!has_pixels || stbi_write_png_to_func(append, &png, picture.width, picture.height, kChannels,
                                             picture.rgba.data(), picture.width * kChannels) == 0) {
-    throw InputError(fmt::format("{}: a picture of {} x {} cannot be written as PNG", path.string(),
-                                 picture.width, picture.height));
+    throw InputError(fmt::format("a picture of {} x {} cannot be written as PNG", picture.width,
+                                 picture.height));
   }
+  return png;
+}
+
+void writePng(const std::filesystem::path& path, const Picture& picture) {
   AtomicFile file(path);
-  file.write(png);
+  file.write(encodePng(picture));
   file.commit();
 }
 

@@ -132,7 +132,7 @@ void Inspector::PictureRate::add(double seconds, double drawing_seconds) {
 }
 
 bool Inspector::needsRedraw() {
-  return session_.busy() || views_.needsRedraw() || ImGui::GetIO().WantTextInput;
+  return session_.busy() || views_.needsRedraw() || page_request_ || ImGui::GetIO().WantTextInput;
 }
 
 std::optional<double> Inspector::animationSeconds() const {

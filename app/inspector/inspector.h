@@ -58,6 +58,10 @@ class Inspector {
   [[nodiscard]] std::optional<double> animationSeconds() const;
   /// Returns the file for a requested screenshot, and clears the request.
   std::optional<std::filesystem::path> takeScreenshotRequest();
+  /// The same for a requested page for others.
+  std::optional<std::filesystem::path> takePageRequest();
+  /// That page, with a picture of the window as PNG.
+  [[nodiscard]] std::string page(std::string_view png);
   /// Directory of the numbered pictures of a movie; "": not recording.
   [[nodiscard]] const std::filesystem::path& movieDirectory() const { return movie_directory_; }
   /// Returns a value of the session's state as text, for scripts and tests: "frame", "pairs", …
@@ -121,6 +125,7 @@ class Inspector {
   void askLoadAlgorithms();
   void askSaveRecording();
   void askExportTimings(const std::string& table);
+  void askShare();
   void askMovie();
 
   // Docked panels: see docks.cpp.
@@ -189,6 +194,8 @@ class Inspector {
   bool style_changed_ = false;  ///< theme or scale has changed since the last picture
   bool screenshot_requested_ = false;
   int screenshots_ = 0;
+  std::optional<std::filesystem::path> page_request_;
+  bool page_is_due_ = false;  ///< the dialog that asked for its file is gone from the picture
   std::filesystem::path movie_directory_;
 };
 

@@ -4,12 +4,14 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "broadmark/files.h"
 #include "broadmark/harness/environment.h"
 #include "broadmark/recordings/recording.h"
 #include "inspector/authoring/author_dialogs.h"
 #include "inspector/inspector.h"
+#include "inspector/session/share_page.h"
 #include "sources/source.h"
 
 namespace broadmark {
@@ -66,6 +68,26 @@ void Inspector::askExportTimings(const std::string& table) {
                   session_.notices.setStatus(fmt::format("written: {}", path.string()));
                 });
               }});
+}
+
+void Inspector::askShare() {
+  files_.ask({.title = "Share the picture, its verdict and the command that opens it",
+              .purpose = FileDialog::Purpose::save,
+              .extensions = {".html"},
+              .suggestion = fs::path(fmt::format("frame {}.html", session_.playback.frame())),
+              .chosen = [this](const fs::path& path) {
+                page_request_ = path;
+                page_is_due_ = false;
+              }});
+}
+
+std::optional<fs::path> Inspector::takePageRequest() {
+  if (!page_request_ || !std::exchange(page_is_due_, true)) return {};
+  return std::exchange(page_request_, {});
+}
+
+std::string Inspector::page(std::string_view png) {
+  return sharePage(session_, views_.first().answer(), png);
 }
 
 void Inspector::askMovie() {

@@ -21,6 +21,8 @@ namespace {
 
 /// Longest wait for an expected value while the session is busy, in seconds.
 constexpr double kTimeout = 60;
+/// Where to press an input: its label, on the right, does not take the focus.
+constexpr float kBeforeLabel = 0.1F;
 
 std::vector<std::string> splitWords(std::string_view line) {
   std::vector<std::string> words;
@@ -86,7 +88,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
       {"enter", "WIDGET TEXT", 2, 2, "replaces the text of an input, and confirms it", &P::enter},
       {"choose", "WIDGET OPTION", 2, 2, "opens a list, and selects an option",
        [](P& player, const Words& words, Inspector&) {
-         player.clickWidget(words[0], 0, 1);
+         player.clickWidget(words[0], 0, 1, kBeforeLabel);
          player.clickWidget(fmt::format("{}/{}", words[0], words[1]), 0, 1);
        }},
       {"type", "TEXT", 1, 1, "types into the focused widget", &P::type},
@@ -265,9 +267,9 @@ float ScriptPlayer::number(const std::string& text) const {
   return static_cast<float>(*value);
 }
 
-void ScriptPlayer::clickWidget(const std::string& widget, int button, int times) {
+void ScriptPlayer::clickWidget(const std::string& widget, int button, int times, float x) {
   reveal(widget);
-  movePointer(widget, 0.5F, 0.5F);
+  movePointer(widget, x, 0.5F);
   for (int time = 0; time < times; ++time) {
     push(buttonEvent(button, true));
     push(buttonEvent(button, false));
@@ -275,7 +277,7 @@ void ScriptPlayer::clickWidget(const std::string& widget, int button, int times)
 }
 
 void ScriptPlayer::enter(const Words& words, Inspector& inspector) {
-  clickWidget(words[0], 0, 1);
+  clickWidget(words[0], 0, 1, kBeforeLabel);
   key({"Ctrl+A"}, inspector);
   if (words[1].empty()) key({"Delete"}, inspector);
   type({words[1]}, inspector);

@@ -68,7 +68,8 @@ class ScriptPlayer {
   void places(const Words& words, Inspector& inspector);
   void resize(const Words& words, Inspector& inspector);
 
-  void clickWidget(const std::string& widget, int button, int times);
+  /// `x`: where in the widget, from 0 to 1.
+  void clickWidget(const std::string& widget, int button, int times, float x = 0.5F);
   void movePointer(const std::string& widget, float x, float y);
   void reveal(const std::string& widget);
   void push(InputEvent event);

@@ -33,7 +33,7 @@ TEST_F(Plugin, IsListed) {
 }
 
 TEST_F(Plugin, RunsBesideTheBuiltInOnes) {
-  const ProgramResult ended = run(runWith({"--plugin", plugin_, "--algorithm", "Faulty,sap",
+  const ProgramResult ended = run(runWith({"--plugin", plugin_, "--algorithm", "sap,Faulty",
                                            "--param", "fat_margin=900", "--json", "results.json"}));
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
   const Json cases = readJson(file("results.json")).at("cases");

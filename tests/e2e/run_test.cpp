@@ -151,7 +151,7 @@ TEST_F(Run, RefusesQueriesThatItCannotAnswer) {
   EXPECT_THAT(error({"--queries", "rays"}), HasSubstr("KIND:N is expected"));
   EXPECT_THAT(error({"--queries", "rays:9", "--answer", "events"}), HasSubstr("excludes"));
   run({"--headless", "freefall", "--objects", "20", "--frames", "2", "--queries", "rays:9",
-       "--algorithm", "kd,bf", "--json", "results.json"});
+       "--algorithm", "bf,kd", "--json", "results.json"});
   EXPECT_EQ(cases().at(0).at("status"), "ok");
   EXPECT_EQ(cases().at(1).at("reason"), "does not answer queries of the kind rays");
 }

@@ -49,6 +49,8 @@ inline constexpr int kMaxPictureSide = 16384;  ///< pixels per side
 Picture drawFrame(OffscreenContext&, const SceneInfo&, const Frame&, PairRuns overlaps, int width,
                   int height);
 
+/// The bytes of a PNG file. Throws InputError for an empty picture.
+std::string encodePng(const Picture&);
 /// Writes a PNG atomically. Throws InputError if the path cannot be written.
 void writePng(const std::filesystem::path&, const Picture&);
 

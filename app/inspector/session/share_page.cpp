@@ -1,0 +1,113 @@
+#include "inspector/session/share_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "broadmark/parameters.h"
+#include "inspector/session/frame_provider_requests.h"
+#include "request/reading_options.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      bits = bits << 8 | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U);
+    }
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      const bool is_padding = i + digit > bytes.size();
+      text += is_padding ? '=' : kDigits[bits >> (18 - 6 * digit) & 63];
+    }
+  }
+  return text;
+}
+
+std::string escapedForHtml(std::string_view text) {
+  return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}});
+}
+
+/// The options of a scene's parameters that differ from the defaults.
+std::string sceneOptions(ParameterValues values) {
+  const std::string scene = values.extract("scene").mapped();
+  const auto fresh = makeSimulation(scene, values["engine"]);
+  std::string options = shellQuoted(scene);
+  options += fmt::format(" --engine {}", shellQuoted(values["engine"]));
+  for (const auto& [key, value] : changedValues(std::move(values), *fresh)) {
+    options += fmt::format(" --param {}", shellQuoted(fmt::format("{}={}", key, value)));
+  }
+  return options;
+}
+
+}  // namespace
+
+std::string openingCommand(const Session& session) {
+  const auto source = session.playback.source();
+  if (!source) return "";
+  std::string command = "broadmark ";
+  if (!source->recording.empty()) {
+    command += shellQuoted(source->recording.string());
+  } else if (source->origin == FrameOrigin::simulation) {
+    command += sceneOptions(sceneParametersOf(source.get()));
+  } else {
+    return "";
+  }
+  for (const auto& [key, value] : session.playback.reading) {
+    command += value == "on" ? fmt::format(" {}", parameterOption(key))
+                             : fmt::format(" {}={}", parameterOption(key), shellQuoted(value));
+  }
+  std::vector<std::string> ids;
+  std::set<std::string> options;
+  for (const TrackEdit& track : session.tracks.list) {
+    const Algorithm& algorithm = track.test_case.algorithm;
+    ids.push_back(algorithm.id);
+    if (!algorithm.plugin.empty()) options.insert("--plugin " + shellQuoted(algorithm.plugin));
+    for (const auto& [key, value] : track.test_case.parameters) {
+      options.insert("--param " + shellQuoted(fmt::format("{}:{}={}", algorithm.id, key, value)));
+    }
+  }
+  if (!ids.empty()) command += fmt::format(" --algorithm {}", fmt::join(ids, ","));
+  for (const std::string& option : options) command += ' ' + option;
+  return command + fmt::format(" --frame {}", session.playback.frame());
+}
+
+std::string sharePage(const Session& session, const AnswerText& answer, std::string_view png) {
+  const std::string command = openingCommand(session);
+  const std::string title =
+      fmt::format("{}, frame {}", session.playback.scene().name, session.playback.frame());
+  return fmt::format(
+      R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+<meta name="viewport" content="width=device-width">
+<style>
+body {{ max-width: 75rem; margin: 2rem auto; padding: 0 1rem; font: 16px/1.5 sans-serif; color-scheme: light dark }}
+img {{ max-width: 100%; height: auto }}
+pre {{ white-space: pre-wrap; overflow-wrap: anywhere; padding: 1rem; border: 1px solid }}
+</style></head><body>
+<h1>{title}</h1>
+<p>{answer}{comparison}.</p>
+<img alt="The inspector" src="data:image/png;base64,{picture}">
+{command}
+</body></html>
+)",
+      fmt::arg("title", escapedForHtml(title)), fmt::arg("answer", escapedForHtml(answer.answer)),
+      fmt::arg("comparison", escapedForHtml(answer.comparison.empty() ? std::string()
+                                                                      : "; " + answer.comparison)),
+      fmt::arg("picture", base64(png)),
+      fmt::arg("command", command.empty()
+                              ? std::string()
+                              : fmt::format("<p>To open it in Broadmark:</p>\n<pre>{}</pre>",
+                                            escapedForHtml(command))));
+}
+
+}  // namespace broadmark
