@@ -30,7 +30,7 @@ class External : public EndToEnd {
 
 TEST_F(External, RunsBesideTheBuiltInOnes) {
   const ProgramResult ended = runWith(
-      "none", {"--algorithm", "outside,sap", "--check", "full", "--param", "outside:slack=0.5"});
+      "none", {"--algorithm", "sap,outside", "--check", "full", "--param", "outside:slack=0.5"});
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
   const Json cases = readJson(file("results.json")).at("cases");
   ASSERT_EQ(cases.size(), 2U);
