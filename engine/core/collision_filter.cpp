@@ -107,38 +107,29 @@ CollisionFilter CollisionFilter::with(std::span<const std::uint32_t> changed,
   return with(changed, groups, count);
 }
 
-/// Tests only the criteria of this filter, without branches: a pair's result cannot be predicted.
-template <bool kLayers, bool kWorlds, bool kTags>
-std::size_t CollisionFilter::Data::retainWanted(std::span<Pair> pairs) const {
+/// Without branches on a pair's result, which cannot be predicted.
+std::size_t CollisionFilter::retainWanted(std::span<Pair> pairs) const {
+  if (data_ == nullptr) return pairs.size();
+  const Data& data = *data_;
+  if (data.layers.empty() && !data.matrix.collide(0, 0)) {
+    const auto dropped = std::ranges::remove_if(pairs, [](Pair pair) { return pair.a < pair.b; });
+    return pairs.size() - dropped.size();
+  }
+  const bool has_layers = !data.layers.empty();
+  const bool has_worlds = !data.worlds.empty();
+  const bool has_tags = !data.tags.empty();
   std::size_t count = 0;
   for (const Pair pair : pairs) {
     pairs[count] = pair;
     bool wanted = true;
     if (pair.a < pair.b) [[likely]] {
-      if constexpr (kLayers) wanted &= matrix.collide(layers[pair.a], layers[pair.b]);
-      if constexpr (kWorlds) wanted &= worlds[pair.a] == worlds[pair.b];
-      if constexpr (kTags) wanted &= !shareTag(tag_vectors[pair.a], tag_vectors[pair.b]);
+      if (has_layers) wanted &= data.matrix.collide(data.layers[pair.a], data.layers[pair.b]);
+      if (has_worlds) wanted &= data.worlds[pair.a] == data.worlds[pair.b];
+      if (has_tags) wanted &= !shareTag(data.tag_vectors[pair.a], data.tag_vectors[pair.b]);
     }
     count += wanted ? 1 : 0;
   }
   return count;
-}
-
-std::size_t CollisionFilter::retainWanted(std::span<Pair> pairs) const {
-  if (data_ == nullptr) return pairs.size();
-  if (data_->layers.empty() && !data_->matrix.collide(0, 0)) {
-    const auto dropped = std::ranges::remove_if(pairs, [](Pair pair) { return pair.a < pair.b; });
-    return pairs.size() - dropped.size();
-  }
-  using Retain = std::size_t (Data::*)(std::span<Pair>) const;
-  constexpr Retain kRetain[2][2][2] = {
-      {{&Data::retainWanted<false, false, false>, &Data::retainWanted<false, false, true>},
-       {&Data::retainWanted<false, true, false>, &Data::retainWanted<false, true, true>}},
-      {{&Data::retainWanted<true, false, false>, &Data::retainWanted<true, false, true>},
-       {&Data::retainWanted<true, true, false>, &Data::retainWanted<true, true, true>}}};
-  const Retain retain =
-      kRetain[!data_->layers.empty()][!data_->worlds.empty()][!data_->tags.empty()];
-  return (*data_.*retain)(pairs);
 }
 
 bool operator==(const CollisionFilter& a, const CollisionFilter& b) {

@@ -284,11 +284,10 @@ TEST(Session, ExportingACaseWritesNothingElse) {
 
 TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
   for (const Arguments& lost :
-       {Arguments{"--repetitions", "2"}, Arguments{"--warmup", "2"}, Arguments{"--check", "off"},
-        Arguments{"--time-limit", "1"}, Arguments{"--record", "d"}, Arguments{"--shard", "0/2"},
-        Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--allow-timeout"},
-        Arguments{"--print-pairs"}, Arguments{"--json", "j"}, Arguments{"--csv", "c"},
-        Arguments{"--csv-frames", "c"}}) {
+       {Arguments{"--repetitions", "2"}, Arguments{"--warmup", "2"}, Arguments{"--time-limit", "1"},
+        Arguments{"--record", "d"}, Arguments{"--shard", "0/2"}, Arguments{"--filter", "x"},
+        Arguments{"--list"}, Arguments{"--allow-timeout"}, Arguments{"--print-pairs"},
+        Arguments{"--json", "j"}, Arguments{"--csv", "c"}, Arguments{"--csv-frames", "c"}}) {
     Arguments window = {"freefall"};
     window.insert(window.end(), lost.begin(), lost.end());
     expectRefused(window, {lost[0], "--headless"});
@@ -302,6 +301,7 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
                     .inspector());
   }
   EXPECT_EQ(parseSession({"freefall", "--frame", "7"}).frame, 7U);
+  EXPECT_EQ(parseSession({"freefall", "--check", "off"}).policy.check, CheckMode::off);
   expectRefused({"freefall", "brownian"}, {"'brownian'", "one source"});
   EXPECT_THAT(parseSession({}).sources, IsEmpty()) << "the inspector needs none";
 }

@@ -123,8 +123,6 @@ class CollisionFilter {
       if (!worlds.empty() && worlds[a] != worlds[b]) return false;
       return tag_vectors.empty() || !shareTag(tag_vectors[a], tag_vectors[b]);
     }
-    template <bool kLayers, bool kWorlds, bool kTags>
-    std::size_t retainWanted(std::span<Pair> pairs) const;
   };
 
   /// Compares each tag with each, without branches.

@@ -143,7 +143,7 @@ class alignas(64) PairBuffer {
   }
 
  private:
-  void makeRoom(std::size_t count) {
+  [[gnu::noinline]] void makeRoom(std::size_t count) {
     flush();
     const std::size_t capacity = pairs_.size();
     if (size_ + count > capacity) {
