@@ -1,5 +1,7 @@
 // Programs as algorithms.
 
+#include <fmt/format.h>
+
 #include "e2e/end_to_end.h"
 #include "support/places.h"
 
