@@ -156,12 +156,6 @@ std::string csv(const Comparison& comparison) {
   return text;
 }
 
-/// Escapes a text for XML. Control characters, which XML cannot represent, become blanks.
-std::string escapedForXml(std::string text) {
-  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
-}
-
 /// Whether no judgement of the case is possible.
 bool isSkipped(const CaseComparison& compared) {
   return compared.verdict == Verdict::other_conditions ||

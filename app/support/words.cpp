@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -44,6 +45,11 @@ std::string escaped(std::string_view text,
     result += found == replacements.end() ? std::string_view(&c, 1) : found->second;
   }
   return result;
+}
+
+std::string escapedForXml(std::string text) {
+  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 
 std::string shellQuoted(const std::string& text) {

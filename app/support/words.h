@@ -39,6 +39,9 @@ std::vector<std::string> splitAt(char separator, std::string_view text);
 std::string escaped(std::string_view text,
                     std::initializer_list<std::pair<char, std::string_view>> replacements);
 
+/// Escapes a text for XML and HTML. Control characters, which XML cannot represent, become blanks.
+std::string escapedForXml(std::string text);
+
 /// Quotes a shell word with single quotes if necessary.
 std::string shellQuoted(const std::string& text);
 

@@ -14,7 +14,7 @@ namespace broadmark {
 struct Example {
   const char* name;
   const char* doc;    ///< one line
-  const char* scene;  ///< a built-in one; null: boxes that touch, see findTheBug()
+  const char* scene;  ///< a built-in one; null: boxes that touch
   std::uint32_t objects;
   std::uint32_t preview_objects;        ///< fewer: of the picture on the start page
   std::vector<const char*> algorithms;  ///< empty: `plugin`'s

@@ -33,10 +33,6 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-std::string escapedForHtml(std::string_view text) {
-  return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}});
-}
-
 /// The options of a scene's parameters that differ from the defaults.
 std::string sceneOptions(ParameterValues values) {
   const std::string scene = values.extract("scene").mapped();
@@ -100,14 +96,14 @@ pre {{ white-space: pre-wrap; overflow-wrap: anywhere; padding: 1rem; border: 1p
 {command}
 </body></html>
 )",
-      fmt::arg("title", escapedForHtml(title)), fmt::arg("answer", escapedForHtml(answer.answer)),
-      fmt::arg("comparison", escapedForHtml(answer.comparison.empty() ? std::string()
-                                                                      : "; " + answer.comparison)),
+      fmt::arg("title", escapedForXml(title)), fmt::arg("answer", escapedForXml(answer.answer)),
+      fmt::arg("comparison",
+               escapedForXml(answer.comparison.empty() ? std::string() : "; " + answer.comparison)),
       fmt::arg("picture", base64(png)),
       fmt::arg("command", command.empty()
                               ? std::string()
                               : fmt::format("<p>To open it in Broadmark:</p>\n<pre>{}</pre>",
-                                            escapedForHtml(command))));
+                                            escapedForXml(command))));
 }
 
 }  // namespace broadmark
