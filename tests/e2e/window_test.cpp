@@ -58,6 +58,16 @@ class Screen {
 
 class WindowTest : public EndToEnd {
  protected:
+  /// Writes scene.json, a scene of one body.
+  void writeScene() const {
+    writeFile(file("scene.json"), R"({
+"schema": "broadmark-scene/1",
+"name": "Hands",
+"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
+"bodies": [{"box": [4, 4, 4], "position": [0, 0, 0]}]
+})");
+  }
+
   void start(const Screen& screen, const Arguments& arguments) {
     program_.emplace(
         directory_, arguments,
@@ -182,12 +192,7 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
 TEST_F(WindowTest, AKilledWindowLosesNeitherSettingsNorAnUnsavedScene) {
   const Screen screen;
   ASSERT_FALSE(screen.name().empty()) << "Xvfb does not start";
-  writeFile(file("scene.json"), R"({
-"schema": "broadmark-scene/1",
-"name": "Hands",
-"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
-"bodies": [{"box": [4, 4, 4], "position": [0, 0, 0]}]
-})");
+  writeScene();
   start(screen, {"scene.json"});
   const auto appears = [&](const fs::path& path, const std::string& text) {
     return program_->waitUntil(
@@ -219,12 +224,7 @@ TEST_F(WindowTest, AKilledWindowLosesNeitherSettingsNorAnUnsavedScene) {
 TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
   const Screen screen;
   ASSERT_FALSE(screen.name().empty()) << "Xvfb does not start";
-  writeFile(file("scene.json"), R"({
-"schema": "broadmark-scene/1",
-"name": "Hands",
-"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
-"bodies": [{"box": [4, 4, 4], "position": [0, 0, 0]}]
-})");
+  writeScene();
   writeFile(file("script.txt"),
             "patience 90\n"
             "open scene.json\n"

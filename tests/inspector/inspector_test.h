@@ -23,11 +23,12 @@ namespace broadmark::tests {
 
 class InspectorTest : public testing::Test {
  protected:
-  explicit InspectorTest(Preferences preferences = {}, const std::filesystem::path& autosaves = {})
+  explicit InspectorTest(Preferences preferences = {}, const std::filesystem::path& autosaves = {},
+                         ExecutorFactory make_executor = makeInProcessExecutor)
       : context(makeOffscreenContext(GlSource::automatic)),
         gl(*context),
-        inspector(gl, algorithmsAndFaultyOnes(), std::move(preferences), 1, makeInProcessExecutor,
-                  simulateInProcess, autosaves),
+        inspector(gl, algorithmsAndFaultyOnes(), std::move(preferences), 1,
+                  std::move(make_executor), simulateInProcess, autosaves),
         former_directory(std::filesystem::current_path()) {
     std::filesystem::current_path(directory / "");  // the folder of screenshots
     setParameters(inspector.session().draft.scene(), {{"objects", "40"}, {"frames", "20"}});

@@ -6,9 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "broadmark/render/framebuffer.h"
-#include "inspector/helpers.h"
-#include "inspector/inspector.h"
+#include "inspector/inspector_test.h"
 #include "inspector/ui/terms.h"
 #include "support/wrapped_host.h"
 
@@ -32,12 +30,11 @@ std::unique_ptr<CaseExecutor> hostWithPeak(const Case& test_case, const CancelQu
       test_case, HostOfTimes::Times{.initialize_ns = 1'000'000, .of_frame = rule});
 }
 
-class PhasesPanelTest : public testing::Test {
+class PhasesPanelTest : public InspectorTest {
  protected:
-  PhasesPanelTest()
-      : context(makeOffscreenContext(GlSource::automatic)),
-        gl(*context),
-        inspector(gl, builtinAlgorithms(), {}, 1, hostWithPeak) {
+  PhasesPanelTest() : InspectorTest({}, {}, hostWithPeak) {
+    width = 1440;
+    height = 900;
     Session& session = inspector.session();
     session.draft.choose("brownian");
     setParameters(session.draft.scene(), {{"engine", "kinematic"}});
@@ -45,17 +42,9 @@ class PhasesPanelTest : public testing::Test {
     session.draft.simulate();
     for (const char* id : {"grid-bf", "sap"}) session.tracks.add(id);
     session.playback.goTo(kFrames);
-    drawUntilIdle();
+    waitUntilIdle();
     session.notices.raisePanel("Phases");
-    drawUntilIdle();
-  }
-
-  void drawUntilIdle() {
-    for (int i = 0; i < 6 || !input.empty(); ++i) {
-      const Framebuffer target(gl, 1440, 900, 1);
-      inspector.draw(input, 1440, 900, 1.0 / 60, [&] { target.bind(); });
-      inspector.session().runs.waitUntilIdle(kForever);
-    }
+    waitUntilIdle();
   }
 
   WidgetPlace place(const std::string& widget) {
@@ -64,26 +53,14 @@ class PhasesPanelTest : public testing::Test {
     return found != nullptr ? *found : WidgetPlace{};
   }
 
-  void press(float x, float y) {
-    input.push({.kind = InputEvent::Kind::move, .x = x, .y = y});
-    for (const bool down : {true, false}) {
-      input.push({.kind = InputEvent::Kind::button, .code = 0, .down = down});
-    }
-    drawUntilIdle();
+  void pressAndWait(float x, float y) {
+    press({x, y});
+    waitUntilIdle();
   }
-  void click(const std::string& widget) {
-    const WidgetPlace at = place(widget);
-    press((at.min.x + at.max.x) / 2, (at.min.y + at.max.y) / 2);
+  void clickAndWait(const std::string& widget) {
+    click(widget);
+    waitUntilIdle();
   }
-
-  std::string value(const std::string& name) {
-    return inspector.value(name).value_or("(no such value)");
-  }
-
-  std::unique_ptr<OffscreenContext> context;
-  Gl gl;
-  Inspector inspector;
-  InputQueue input;
 };
 
 TEST_F(PhasesPanelTest, AClickNearAPeakShowsItsFrameWithCellsAndHeatMap) {
@@ -92,7 +69,7 @@ TEST_F(PhasesPanelTest, AClickNearAPeakShowsItsFrameWithCellsAndHeatMap) {
   int arrived = 0;
   for (float x = plot.min.x; x < plot.max.x && arrived == 0; x += 6) {
     inspector.session().playback.goTo(0);
-    press(x, plot.min.y + 20);
+    pressAndWait(x, plot.min.y + 20);
     if (value("frame") == std::to_string(kPeak)) ++arrived;
   }
   EXPECT_EQ(arrived, 1);
@@ -102,11 +79,11 @@ TEST_F(PhasesPanelTest, AClickNearAPeakShowsItsFrameWithCellsAndHeatMap) {
 }
 
 TEST_F(PhasesPanelTest, ARowGoesToTheSlowestFrameOfTheSpan) {
-  click("Phases/mean of sap");
+  clickAndWait("Phases/mean of sap");
   EXPECT_EQ(value("frame"), std::to_string(kPeak));
   inspector.session().timeline.select(200, 300);
-  drawUntilIdle();
-  click("Phases/mean of sap");
+  waitUntilIdle();
+  clickAndWait("Phases/mean of sap");
   EXPECT_EQ(value("frame"), "200");
 }
 
@@ -117,11 +94,11 @@ TEST_F(PhasesPanelTest, HeadingsSortTableAndStacks) {
     return in_table;
   };
   EXPECT_FALSE(sap_is_first());
-  click("Phases/by/total");
+  clickAndWait("Phases/by/total");
   EXPECT_TRUE(sap_is_first()) << "ascending";
-  click("Phases/by/total");
+  clickAndWait("Phases/by/total");
   EXPECT_FALSE(sap_is_first()) << "descending";
-  click("Phases/by/search_overlaps");
+  clickAndWait("Phases/by/search_overlaps");
   EXPECT_FALSE(sap_is_first());
 }
 
@@ -137,7 +114,7 @@ TEST_F(PhasesPanelTest, EveryHeadingIsExplained) {
   std::size_t headings = 0;
   for (const char* panel : {"Phases", "Results", "Timeline", "Cases", "Duel"}) {
     inspector.session().notices.raisePanel(panel);
-    drawUntilIdle();
+    waitUntilIdle();
     for (const auto& [name, at] : inspector.ui().places()) {
       const std::string prefix = std::string(panel) + "/by/";
       if (!name.starts_with(prefix)) continue;
