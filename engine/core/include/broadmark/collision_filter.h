@@ -70,7 +70,7 @@ class CollisionFilter {
     return data_ == nullptr || data_->wanted(a, b);
   }
   /// Keeps the wanted pairs and the invalid ones (a >= b), in order, at the front, and returns
-  /// their number. A third of the time of wanted() for each pair.
+  /// their number. Half the time of wanted() for each pair.
   std::size_t retainWanted(std::span<Pair> pairs) const;
   /// Sufficient condition for all pairs to be wanted.
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
@@ -101,7 +101,7 @@ class CollisionFilter {
  private:
   friend class LiveFilter;
 
-  /// A body's tags; last, kNoTag.
+  /// A body's tags, padded with kNoTag.
   using TagVector [[gnu::vector_size(16)]] = std::uint32_t;
   static TagVector toVector(const BodyGroups::Tags& tags) {
     const TagVector vector = {tags[0], tags[1], tags[2], BodyGroups::kNoTag};
@@ -114,7 +114,7 @@ class CollisionFilter {
     std::vector<std::uint8_t> layers;
     std::vector<std::uint32_t> worlds;
     std::vector<BodyGroups::Tags> tags;
-    std::vector<TagVector> tag_vectors;  ///< the same
+    std::vector<TagVector> tag_vectors;  ///< the same, for comparisons
 
     [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
       const std::size_t layer_a = layers.empty() ? 0 : layers[a];
