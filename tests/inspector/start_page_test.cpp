@@ -67,6 +67,16 @@ TEST_F(StartPageTest, EveryExampleOpensByAClick) {
   }
 }
 
+TEST_F(StartPageTest, AnUncheckedExampleEndsWithItsScene) {
+  Example unchecked = examples().front();
+  unchecked.check = false;
+  openExample(inspector.session(), unchecked);
+  waitUntilIdle();
+  EXPECT_EQ(value("check"), "no");
+  inspector.session().draft.simulate();
+  EXPECT_EQ(value("check"), "yes");
+}
+
 TEST_F(StartPageTest, TheBugIsFoundByReturn) {
   for (int i = 0; i < 4; ++i) key(GLFW_KEY_RIGHT);
   key(GLFW_KEY_ENTER);

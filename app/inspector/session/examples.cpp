@@ -107,14 +107,14 @@ void openExample(Session& session, const Example& example) {
       session.playback.reading.clear();
       if (example.plugin != nullptr) session.plugins.loadShipped(example.plugin);
       for (const char* algorithm : example.algorithms) session.tracks.add(algorithm);
-      session.mismatches.check = example.check;
-      session.mismatches.stop_at_mismatch = true;
+      session.mismatches.check = session.mismatches.stop_at_mismatch = true;
       if (example.scene == nullptr) {
         openTouchingBoxes(session);
       } else {
         session.draft.adopt(simulationOf(example, example.objects));
         session.draft.simulate();
       }
+      if (!example.check) session.mismatches.uncheckSource();
       session.showSecond(example.beside);
       session.notices.raisePanel("Algorithms");
       session.notices.raisePanel(example.panel);

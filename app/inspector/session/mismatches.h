@@ -129,7 +129,14 @@ class Mismatches {
     clearStop();
     pending_stop_.reset();
     searching_ = false;
+    if (std::exchange(source_unchecked_, false)) check = true;
     endExamination();
+  }
+
+  /// Checks nothing until another source is shown.
+  void uncheckSource() {
+    check = false;
+    source_unchecked_ = true;
   }
 
   /// See ViewRequest.
@@ -217,6 +224,7 @@ class Mismatches {
   std::optional<RunProgress::Stop> pending_stop_;  ///< its pair has not been shown yet
   std::vector<TrackSpec> failed_;                  ///< tracks with errors that have been shown
   bool searching_ = false;
+  bool source_unchecked_ = false;
   std::optional<Examined> examined_;
   std::size_t former_colouring_ = 0;  ///< before the examination
   std::uint64_t former_hidden_classes_ = 0;
