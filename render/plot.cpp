@@ -76,7 +76,7 @@ void fitScale(Axes& axes, const std::vector<const PlotCurve*>& curves) {
   axes.vertical.fit(range);
 }
 
-void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float width) {
+void drawCurve(PlotCanvas& draw, const PlotCurve& curve, const Axes& axes, float width) {
   const ImU32 colour = packed(curve.colour);
   ImVec2 before{};
   bool joined = false;
@@ -88,9 +88,9 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
     const float x = axes.x((from + to) / 2);
     const ImVec2 top{x, axes.y(range.high)};
     const ImVec2 bottom{x, axes.y(range.low)};
-    if (joined) draw.AddLine(before, bottom, colour, width);
-    if (to > from) draw.AddLine(top, {bottom.x, bottom.y + 1}, colour, width);
-    if (!joined) draw.AddCircleFilled(bottom, width, colour, 8);
+    if (joined) draw.line(before, bottom, colour, width);
+    if (to > from) draw.line(top, {bottom.x, bottom.y + 1}, colour, width);
+    if (!joined) draw.disc(bottom, width, colour, 8);
     before = bottom;
     joined = true;
   });
@@ -98,13 +98,12 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
   axes.eachBlock(*curve.circled, [&](double frame, double, FrameValues::Range mark) {
     if (!mark.known()) return;
     const float value = curve.values->at(static_cast<std::uint32_t>(frame));
-    draw.AddCircle({axes.x(frame), axes.y(value)}, 2.2F * width, colour, 10,
-                   width / kPlotLineWidth);
+    draw.circle({axes.x(frame), axes.y(value)}, 2.2F * width, colour, 10, width / kPlotLineWidth);
   });
 }
 
 /// Draws the stack of the highest frame of each block.
-void drawStack(ImDrawList& draw, const std::vector<PlotCurve>& curves, const FrameValues& total,
+void drawStack(PlotCanvas& draw, const std::vector<PlotCurve>& curves, const FrameValues& total,
                const Axes& axes) {
   axes.eachBlock(total, [&](double from, double to, FrameValues::Range range) {
     if (!range.known()) return;
@@ -118,12 +117,12 @@ void drawStack(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Fra
       if (!(value > 0)) continue;
       const float bottom = axes.y(sum);
       sum += value;
-      draw.AddRectFilled({left, axes.y(sum)}, {right, bottom}, packed(curve.colour));
+      draw.filledRect({left, axes.y(sum)}, {right, bottom}, packed(curve.colour));
     }
   });
 }
 
-void drawArea(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
+void drawArea(PlotCanvas& draw, const PlotCurve& curve, const Axes& axes) {
   const float max_value = curve.values->within(0, curve.values->size()).high;
   if (!(max_value > 0)) return;
   axes.eachBlock(*curve.values, [&](double from, double to, FrameValues::Range range) {
@@ -131,8 +130,8 @@ void drawArea(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
     const float left = std::floor(axes.x(from - 0.5));
     const float right = std::max(std::floor(axes.x(to + 0.5)), left + 1);
     const float top = axes.max.y - 0.92F * range.high / max_value * (axes.max.y - axes.min.y);
-    draw.AddRectFilled({left, top}, {right, axes.max.y}, packed(curve.colour, 38));
-    draw.AddRectFilled({left, top - 1}, {right, top + 1}, packed(curve.colour, 120));
+    draw.filledRect({left, top}, {right, axes.max.y}, packed(curve.colour, 38));
+    draw.filledRect({left, top - 1}, {right, top + 1}, packed(curve.colour, 120));
   });
 }
 
@@ -152,7 +151,7 @@ struct Flag {
   ImVec2 min, max;
 };
 
-void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
+void drawAxes(PlotCanvas& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
               const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeight();
   drawValueLines(draw, axes.vertical, axes.min.x, axes.max.x, options.unit, colours);
@@ -160,38 +159,39 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, co
   for (const double frame : axisTicks(axes.first, axes.last, columns, false)) {
     if (frame != std::floor(frame)) continue;
     const float x = axes.x(frame);
-    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.grid);
+    draw.line({x, axes.min.y}, {x, axes.max.y}, colours.grid);
     if (!options.frame_numbers) continue;
     const std::string text = fmt::format("{:.0f}", frame);
     const float half = ImGui::CalcTextSize(text.c_str()).x / 2;
     if (x + half > flag.min.x && x - half < flag.max.x) continue;
-    draw.AddText({x - half, axes.max.y + 2}, colours.text, text.c_str());
+    draw.text({x - half, axes.max.y + 2}, colours.text, text);
   }
 }
 
-/// Draws the thin curve with its scale at the right.
-void drawThin(ImDrawList& draw, const PlotCurve& curve, const Axes& shown) {
-  const float line = ImGui::GetTextLineHeight();
+/// The axes of the thin curve.
+Axes thinAxes(const PlotCurve& curve, const Axes& shown) {
   Axes axes = shown;
   axes.vertical.logarithmic = false;
   fitScale(axes, {&curve});
-  drawCurve(draw, curve, axes, kThinLineWidth * line / 15);
-  draw.PushClipRectFullScreen();
+  return axes;
+}
+
+/// Draws the scale of the thin curve, at the right.
+void drawThinScale(PlotCanvas& draw, const PlotCurve& curve, const Axes& axes) {
   for (const double value : valueTicks(axes.vertical)) {
-    draw.AddText({axes.max.x + 4, axes.y(value) - line / 2}, packed(curve.colour),
-                 withPrefix(value, "").c_str());
+    draw.text({axes.max.x + 4, axes.y(value) - ImGui::GetTextLineHeight() / 2},
+              packed(curve.colour), withPrefix(value, ""));
   }
-  draw.PopClipRect();
 }
 
 /// Draws the limit, clamped to the border if it is out of range.
-void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+void drawLimit(PlotCanvas& draw, const Axes& axes, const PlotOptions& options,
                const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeight();
   const float y = std::clamp(axes.y(options.limit), axes.min.y, axes.max.y);
   const bool within = options.limit >= axes.vertical.low && options.limit <= axes.vertical.high;
   const ImU32 colour = packed(options.limit_colour);
-  if (within) draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colour, line / 10);
+  if (within) draw.line({axes.min.x, y}, {axes.max.x, y}, colour, line / 10);
   const std::string text = fmt::format("{}{}",
                                        within                               ? ""
                                        : options.limit > axes.vertical.high ? "↑ "
@@ -199,9 +199,9 @@ void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
                                        withPrefix(options.limit, options.unit));
   const ImVec2 at{axes.min.x + line / 3, y - axes.min.y < line ? y : y - line};
   const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-  draw.AddRectFilled({at.x - 2, at.y + 1}, {at.x + extent.x + 2, at.y + extent.y - 1},
-                     colours.background, 2);
-  draw.AddText(at, colour, text.c_str());
+  draw.filledRect({at.x - 2, at.y + 1}, {at.x + extent.x + 2, at.y + extent.y - 1},
+                  colours.background, 2);
+  draw.text(at, colour, text);
 }
 
 /// The top of the rows of marks, which are above the axes, from top to bottom.
@@ -210,7 +210,7 @@ float marksTop(const Axes& axes, const PlotOptions& options) {
          kMarkRow * ImGui::GetTextLineHeight() * static_cast<float>(options.marks.size());
 }
 
-void drawMarks(ImDrawList& draw, const Axes& axes, const PlotOptions& options) {
+void drawMarks(PlotCanvas& draw, const Axes& axes, const PlotOptions& options) {
   const float row = kMarkRow * ImGui::GetTextLineHeight();
   float top = marksTop(axes, options);
   for (const PlotMarks& marks : options.marks) {
@@ -218,7 +218,7 @@ void drawMarks(ImDrawList& draw, const Axes& axes, const PlotOptions& options) {
       axes.eachBlock(*frames, [&](double from, double to, FrameValues::Range mark) {
         if (!mark.known()) return;
         const float x = axes.x((from + to) / 2);
-        draw.AddRectFilled({x - 1, top + 1}, {x + 1, top + row}, packed(marks.colour));
+        draw.filledRect({x - 1, top + 1}, {x + 1, top + row}, packed(marks.colour));
       });
     }
     top += row;
@@ -249,35 +249,34 @@ std::uint32_t frameAtMouse(const Axes& axes, const PlotOptions& options, ImVec2 
       .value_or(nearest);
 }
 
-void drawPlayhead(ImDrawList& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
+void drawPlayhead(PlotCanvas& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
                   const PlotColours& colours) {
   const float x = axes.x(options.playhead);
   const float line = ImGui::GetTextLineHeight();
   if (x >= axes.min.x && x <= axes.max.x) {
-    draw.AddLine({x, marksTop(axes, options)}, {x, axes.max.y}, colours.playhead, line / 10);
+    draw.line({x, marksTop(axes, options)}, {x, axes.max.y}, colours.playhead, line / 10);
   }
   if (!options.frame_numbers) return;
-  draw.AddRect(flag.min, flag.max, colours.playhead, 3);
-  draw.AddText({flag.min.x + line / 4, flag.min.y + 1}, colours.playhead, flag.text.c_str());
+  draw.rect(flag.min, flag.max, colours.playhead, 3);
+  draw.text({flag.min.x + line / 4, flag.min.y + 1}, colours.playhead, flag.text);
 }
 
-void drawTitle(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+void drawTitle(PlotCanvas& draw, const Axes& axes, const PlotOptions& options,
                const PlotColours& colours) {
   if (options.title.empty()) return;
   const ImVec2 extent = ImGui::CalcTextSize(options.title.c_str());
   const ImVec2 at{axes.min.x + extent.y / 3, axes.min.y};
-  draw.AddRectFilled({at.x - 2, at.y}, {at.x + extent.x + 2, at.y + extent.y}, colours.background,
-                     2);
-  draw.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), options.title.c_str());
+  draw.filledRect({at.x - 2, at.y}, {at.x + extent.x + 2, at.y + extent.y}, colours.background, 2);
+  draw.text(at, ImGui::GetColorU32(ImGuiCol_Text), options.title);
 }
 
-void drawSpan(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+void drawSpan(PlotCanvas& draw, const Axes& axes, const PlotOptions& options,
               const PlotColours& colours) {
   const float left = axes.x((*options.span)[0] - 0.5);
   const float right = std::max(axes.x((*options.span)[1] + 0.5), left + 1);
-  draw.AddRectFilled({left, axes.min.y}, {right, axes.max.y}, colours.span);
-  draw.AddLine({left, axes.min.y}, {left, axes.max.y}, colours.playhead);
-  draw.AddLine({right, axes.min.y}, {right, axes.max.y}, colours.playhead);
+  draw.filledRect({left, axes.min.y}, {right, axes.max.y}, colours.span);
+  draw.line({left, axes.min.y}, {left, axes.max.y}, colours.playhead);
+  draw.line({right, axes.min.y}, {right, axes.max.y}, colours.playhead);
 }
 
 void writeValue(const PlotCurve* curve, std::uint32_t frame) {
@@ -287,8 +286,9 @@ void writeValue(const PlotCurve* curve, std::uint32_t frame) {
   ImGui::TextUnformatted(text.c_str());
 }
 
-void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Axes& axes,
+void drawCrosshair(const std::vector<PlotCurve>& curves, const Axes& axes,
                    const PlotOptions& options, std::uint32_t frame, const PlotColours& colours) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float x = axes.x(frame);
   draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.text);
   ImGui::BeginTooltip();
@@ -459,27 +459,30 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   }
 
   const PlotColours colours;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(axes.min, axes.max, colours.background, 3);
+  PlotCanvas draw(options.shapes);
+  draw.filledRect(axes.min, axes.max, colours.background, 3);
   const Flag flag(axes, options.playhead);
   drawAxes(draw, axes, options, flag, colours);
-  draw.PushClipRect(axes.min, axes.max, true);
+  draw.clip(axes.min, axes.max);
   if (options.area != nullptr) drawArea(draw, *options.area, axes);
   if (options.span) drawSpan(draw, axes, options, colours);
-  if (options.thin != nullptr) drawThin(draw, *options.thin, axes);
+  if (options.thin != nullptr) {
+    drawCurve(draw, *options.thin, thinAxes(*options.thin, axes), kThinLineWidth * line / 15);
+  }
   if (options.stack_total != nullptr) {
     drawStack(draw, curves, *options.stack_total, axes);
   } else {
     for (const PlotCurve* curve : shown) drawCurve(draw, *curve, axes, kPlotLineWidth * line / 15);
   }
   drawTitle(draw, axes, options, colours);
-  draw.PopClipRect();
-  draw.AddRect(axes.min, axes.max, colours.frame, 3);
+  draw.unclip();
+  if (options.thin != nullptr) drawThinScale(draw, *options.thin, thinAxes(*options.thin, axes));
+  draw.rect(axes.min, axes.max, colours.frame, 3);
   drawMarks(draw, axes, options);
   drawPlayhead(draw, axes, options, flag, colours);
-  draw.PushClipRect(axes.min, axes.max, true);
+  draw.clip(axes.min, axes.max);
   if (options.limit > 0) drawLimit(draw, axes, options, colours);
-  draw.PopClipRect();
+  draw.unclip();
   const ImVec2 legend_min{corner.x + width - legend, axes.min.y};
   result.hovered = drawLegend(draw, entries, legend_min, {corner.x + width, axes.max.y}, colours);
 
@@ -490,7 +493,7 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   handleMouse(axes, options, result);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (hovered && (axes.contains(mouse) || markedFrame(axes, options, mouse))) {
-    drawCrosshair(draw, curves, axes, options, frameAtMouse(axes, options, mouse), colours);
+    drawCrosshair(curves, axes, options, frameAtMouse(axes, options, mouse), colours);
   }
   return result;
 }

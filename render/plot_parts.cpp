@@ -1,17 +1,11 @@
 #include "plot_parts.h"
 
-#include <imgui_internal.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace broadmark {
 namespace {
-
-void drawText(ImDrawList& draw, ImVec2 at, ImU32 colour, std::string_view text) {
-  draw.AddText(at, colour, text.data(), text.data() + text.size());
-}
 
 float widthOf(std::string_view text) {
   return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x;
@@ -60,14 +54,13 @@ std::vector<double> valueTicks(const PlotScale& scale) {
   return ticks;
 }
 
-void drawValueLines(ImDrawList& draw, const PlotScale& scale, float left, float right,
+void drawValueLines(PlotCanvas& draw, const PlotScale& scale, float left, float right,
                     const char* unit, const PlotColours& colours) {
   for (const double value : valueTicks(scale)) {
     const float y = scale.pixelOf(value);
-    draw.AddLine({left, y}, {right, y}, colours.grid);
+    draw.line({left, y}, {right, y}, colours.grid);
     const std::string text = withPrefix(value, unit);
-    drawText(draw, {left - widthOf(text) - 5, y - ImGui::GetTextLineHeight() / 2}, colours.text,
-             text);
+    draw.text({left - widthOf(text) - 5, y - ImGui::GetTextLineHeight() / 2}, colours.text, text);
   }
 }
 
@@ -78,26 +71,22 @@ float legendWidth(std::span<const PlotEntry> entries, float plot_width) {
   return std::min(width + 1.8F * ImGui::GetTextLineHeightWithSpacing(), plot_width / 3);
 }
 
-std::optional<std::size_t> drawLegend(ImDrawList& draw, std::span<const PlotEntry> entries,
+std::optional<std::size_t> drawLegend(PlotCanvas& draw, std::span<const PlotEntry> entries,
                                       ImVec2 min, ImVec2 max, const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const std::size_t fitting = static_cast<std::size_t>(std::max(0.0F, (max.y - min.y) / line));
   std::optional<std::size_t> hovered;
   ImVec2 at{min.x + line / 4, min.y};
-  draw.PushClipRect(min, max, true);
   for (std::size_t i = 0; i < std::min(entries.size(), fitting); ++i, at.y += line) {
     const PlotEntry& entry = entries[i];
     if (ImGui::IsMouseHoveringRect(at, {max.x, at.y + line})) hovered = i;
     const unsigned alpha = entry.hidden ? 70 : 255;
-    draw.AddRectFilled({at.x + line * 0.3F, at.y + line * 0.25F},
-                       {at.x + line * 0.8F, at.y + line * 0.75F}, packed(entry.colour, alpha), 3);
-    ImGui::PushStyleColor(ImGuiCol_Text,
-                          (colours.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT));
-    ImGui::RenderTextEllipsis(&draw, {at.x + line, at.y}, {max.x, at.y + line}, max.x, max.x,
-                              entry.label.data(), entry.label.data() + entry.label.size(), nullptr);
-    ImGui::PopStyleColor();
+    draw.filledRect({at.x + line * 0.3F, at.y + line * 0.25F},
+                    {at.x + line * 0.8F, at.y + line * 0.75F}, packed(entry.colour, alpha), 3);
+    draw.text({at.x + line, at.y},
+              (colours.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT), entry.label,
+              max.x);
   }
-  draw.PopClipRect();
   return hovered;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
+#include "broadmark/render/plot_canvas.h"
 
 namespace broadmark {
 
@@ -42,7 +43,7 @@ struct PlotScale {
 
 /// Grid lines at round values of a vertical scale, from `left` to `right`, with the values at the
 /// left.
-void drawValueLines(ImDrawList& draw, const PlotScale& scale, float left, float right,
+void drawValueLines(PlotCanvas& draw, const PlotScale& scale, float left, float right,
                     const char* unit, const PlotColours& colours);
 /// Round values of a vertical scale, at distances that keep their labels apart.
 std::vector<double> valueTicks(const PlotScale& scale);
@@ -56,7 +57,7 @@ struct PlotEntry {
 /// Width of the legend beside the curves; at most a third of the plot.
 float legendWidth(std::span<const PlotEntry> entries, float plot_width);
 /// Draws the legend into an area. Returns the entry under the mouse.
-std::optional<std::size_t> drawLegend(ImDrawList& draw, std::span<const PlotEntry> entries,
+std::optional<std::size_t> drawLegend(PlotCanvas& draw, std::span<const PlotEntry> entries,
                                       ImVec2 min, ImVec2 max, const PlotColours& colours);
 
 }  // namespace broadmark

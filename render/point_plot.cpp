@@ -44,29 +44,29 @@ struct PointAxes {
 };
 
 /// Draws lines at the points' numbers, their labels where they do not overlap, and the axis name.
-void drawNumbers(ImDrawList& draw, const PointAxes& axes, const char* across,
+void drawNumbers(PlotCanvas& draw, const PointAxes& axes, const char* across,
                  const PlotColours& colours) {
   const float top = axes.values.high_pixel;
   const float bottom = axes.values.low_pixel;
   float next_free_x = std::numeric_limits<float>::lowest();
   for (const double number : axes.numbers) {
     const float x = axes.across.pixelOf(number);
-    draw.AddLine({x, top}, {x, bottom}, colours.grid);
+    draw.line({x, top}, {x, bottom}, colours.grid);
     const std::string text = withPrefix(number, "");
     const float half = ImGui::CalcTextSize(text.c_str()).x / 2;
     if (x - half < next_free_x) continue;
-    draw.AddText({x - half, bottom + 2}, colours.text, text.c_str());
+    draw.text({x - half, bottom + 2}, colours.text, text);
     next_free_x = x + half + ImGui::GetTextLineHeight() / 2;
   }
-  draw.AddText({std::max(next_free_x, axes.across.high_pixel), bottom + 2}, colours.text, across);
+  draw.text({std::max(next_free_x, axes.across.high_pixel), bottom + 2}, colours.text, across);
 }
 
-void drawCurve(ImDrawList& draw, const PointCurve& curve, const PointAxes& axes, float width) {
+void drawCurve(PlotCanvas& draw, const PointCurve& curve, const PointAxes& axes, float width) {
   const ImU32 colour = packed(curve.colour);
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const ImVec2 at = axes.positionOf(curve.points[i]);
-    if (i > 0) draw.AddLine(axes.positionOf(curve.points[i - 1]), at, colour, width);
-    draw.AddCircleFilled(at, width * kPointRadius / kPlotLineWidth, colour, 16);
+    if (i > 0) draw.line(axes.positionOf(curve.points[i - 1]), at, colour, width);
+    draw.disc(at, width * kPointRadius / kPlotLineWidth, colour, 16);
   }
 }
 
@@ -113,8 +113,8 @@ PointPlotResult drawPointPlot(const char* id, const std::vector<PointCurve>& cur
   axes.values.high_pixel = min.y;
 
   const PlotColours colours;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(min, max, colours.background, 3);
+  PlotCanvas draw(options.shapes);
+  draw.filledRect(min, max, colours.background, 3);
   drawValueLines(draw, axes.values, min.x, max.x, options.unit, colours);
   drawNumbers(draw, axes, options.across, colours);
   const auto hovered_entry =
@@ -127,13 +127,14 @@ PointPlotResult drawPointPlot(const char* id, const std::vector<PointCurve>& cur
           {.curve = i, .point = point, .at = axes.positionOf(curves[i].points[point])});
     }
   }
-  draw.AddRect(min, max, colours.frame, 3);
+  draw.rect(min, max, colours.frame, 3);
   if (!hovered) return result;
   result.hovered = nearestTo(ImGui::GetIO().MousePos, result.drawn);
   result.clicked = pressed && result.hovered.has_value();
   if (result.hovered) {
     const PointCurve& curve = curves[result.hovered->curve];
-    draw.AddCircle(result.hovered->at, 2 * kPointRadius * line / 15, packed(curve.colour), 16);
+    ImGui::GetWindowDrawList()->AddCircle(result.hovered->at, 2 * kPointRadius * line / 15,
+                                          packed(curve.colour), 16);
     drawTooltip(curve, curve.points[result.hovered->point], options);
   }
   return result;

@@ -41,10 +41,6 @@ struct Options {
   OutputPaths outputs;
 };
 
-NamedResults readResults(const fs::path& path) {
-  return {path.string(), parseResults(readTextFile(path), path.string())};
-}
-
 /// The files to judge. A run is compared with itself only with --by.
 std::vector<fs::path> judgedFiles(const Options& options) {
   if (!options.after.empty()) return options.after;

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/harness/runner.h"
 #include "broadmark/names.h"
 #include "support/exit_status.h"
@@ -312,6 +313,10 @@ std::optional<double> Comparison::drift() const {
   }
   if (drifts.empty()) return std::nullopt;
   return quantile(drifts, 0.5);
+}
+
+NamedResults readResults(const std::filesystem::path& path) {
+  return {path.string(), parseResults(readTextFile(path), path.string())};
 }
 
 Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,

@@ -1,6 +1,7 @@
 // Compares two runs case by case.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,6 +75,8 @@ struct NamedResults {
   std::string name;
   Results results;
 };
+/// Reads a results file, whose path is the name. Throws InputError.
+NamedResults readResults(const std::filesystem::path&);
 
 /// Compares the cases of results that outlive the comparison, if they have the same name and the
 /// same hash of the recording; the k-th with the k-th if there are several. Throws InputError for
@@ -106,7 +109,9 @@ struct ComparisonWriter {
 std::vector<ComparisonWriter> comparisonWriters();
 /// Writes the formats that have a path. Throws InputError.
 void writeComparison(const OutputPaths&, const Comparison&);
-/// Formats a human-readable table.
+/// A row of headings, then a row per case: "case", A, B, B/A, its interval, "verdict".
+std::vector<std::vector<std::string>> comparisonTable(const Comparison&);
+/// Formats this table, with notes and a summary.
 std::string formatComparison(const Comparison&);
 
 }  // namespace broadmark

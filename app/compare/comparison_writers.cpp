@@ -211,7 +211,7 @@ std::string github(const Comparison& comparison) {
 
 }  // namespace
 
-std::string formatComparison(const Comparison& comparison) {
+std::vector<std::vector<std::string>> comparisonTable(const Comparison& comparison) {
   std::vector<std::vector<std::string>> rows = {columnsOf(comparison)};
   for (const CaseComparison& compared : comparison.cases) {
     std::vector<std::string>& row = rows.emplace_back(timeCells(compared));
@@ -219,7 +219,12 @@ std::string formatComparison(const Comparison& comparison) {
     row.insert(row.begin(), compared.id + (baseline.empty() ? "" : " against " + baseline));
     row.push_back(verdictText(compared));
   }
-  std::string text = alignColumns(rows, {false, true, true, true, true, false});
+  return rows;
+}
+
+std::string formatComparison(const Comparison& comparison) {
+  std::string text =
+      alignColumns(comparisonTable(comparison), {false, true, true, true, true, false});
   text += conditionsText(comparison);
   for (const std::string& note : comparison.notes) text += note + '\n';
   return text + summaryText(comparison) + '\n';

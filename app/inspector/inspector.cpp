@@ -55,6 +55,7 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
     preferences_.remember(file);
     commands_changed_ = true;
   };
+  ui_.on_save_plot = [this](const std::string& plot) { askSavePlot(plot); };
   ui_.on_correction = [this](const std::string& text) {
     session_.notices.setStatus(text, Severity::warning);
   };
@@ -132,7 +133,8 @@ void Inspector::PictureRate::add(double seconds, double drawing_seconds) {
 }
 
 bool Inspector::needsRedraw() {
-  return session_.busy() || views_.needsRedraw() || page_request_ || ImGui::GetIO().WantTextInput;
+  return session_.busy() || views_.needsRedraw() || picture_request_ ||
+         ImGui::GetIO().WantTextInput;
 }
 
 std::optional<double> Inspector::animationSeconds() const {
@@ -141,14 +143,20 @@ std::optional<double> Inspector::animationSeconds() const {
   return {};
 }
 
-std::optional<fs::path> Inspector::takeScreenshotRequest() {
-  if (!std::exchange(screenshot_requested_, false)) return {};
-  fs::path path;
-  do {
-    path = fmt::format("broadmark-{:03}.png", ++screenshots_);
-  } while (fs::exists(path));
-  session_.notices.setStatus(fmt::format("screenshot: {}", fs::absolute(path).string()));
-  return path;
+void Inspector::requestPicture(fs::path file, PictureWriter write) {
+  picture_is_due_ = false;
+  picture_request_ = [this, file = std::move(file),
+                      write = std::move(write)](const Picture& picture) {
+    session_.notices.catchErrors([&] {
+      write(file, picture);
+      session_.notices.setStatus(fmt::format("written: {}", fs::absolute(file).string()));
+    });
+  };
+}
+
+std::function<void(const Picture&)> Inspector::takePictureRequest() {
+  if (!picture_request_ || !std::exchange(picture_is_due_, true)) return {};
+  return std::exchange(picture_request_, {});
 }
 
 void Inspector::build(const RunProgress& progress, int width, int height, double seconds) {

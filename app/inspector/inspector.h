@@ -12,6 +12,7 @@
 
 #include "broadmark/render/gl.h"
 #include "broadmark/render/input_queue.h"
+#include "broadmark/render/picture.h"
 #include "broadmark/render/ui_renderer.h"
 #include "inspector/authoring/autosave.h"
 #include "inspector/commands.h"
@@ -56,12 +57,8 @@ class Inspector {
   [[nodiscard]] bool needsRedraw();
   /// Time after which to draw a picture that moves for ever; nothing: there is none.
   [[nodiscard]] std::optional<double> animationSeconds() const;
-  /// Returns the file for a requested screenshot, and clears the request.
-  std::optional<std::filesystem::path> takeScreenshotRequest();
-  /// The same for a requested page for others.
-  std::optional<std::filesystem::path> takePageRequest();
-  /// That page, with a picture of the window as PNG.
-  [[nodiscard]] std::string page(std::string_view png);
+  /// Returns what to do with this picture of the window, and clears the request; null: nothing.
+  std::function<void(const Picture&)> takePictureRequest();
   /// Directory of the numbered pictures of a movie; "": not recording.
   [[nodiscard]] const std::filesystem::path& movieDirectory() const { return movie_directory_; }
   /// Returns a value of the session's state as text, for scripts and tests: "frame", "pairs", …
@@ -125,7 +122,11 @@ class Inspector {
   void askLoadAlgorithms();
   void askSaveRecording();
   void askExportTimings(const std::string& table);
+  void takeScreenshot();
   void askShare();
+  /// `plot`: its name, see Ui.
+  void askSavePlot(const std::string& plot);
+  void savePlot(const std::string& plot, std::filesystem::path path);
   void askMovie();
 
   // Docked panels: see docks.cpp.
@@ -192,10 +193,12 @@ class Inspector {
   bool closing_ = false;
   float screen_scale_;          ///< suggested by the screen
   bool style_changed_ = false;  ///< theme or scale has changed since the last picture
-  bool screenshot_requested_ = false;
-  int screenshots_ = 0;
-  std::optional<std::filesystem::path> page_request_;
-  bool page_is_due_ = false;  ///< the dialog that asked for its file is gone from the picture
+  /// Writes a picture, and reports its file.
+  using PictureWriter = std::function<void(const std::filesystem::path&, const Picture&)>;
+  void requestPicture(std::filesystem::path file, PictureWriter write);
+
+  std::function<void(const Picture&)> picture_request_;
+  bool picture_is_due_ = false;  ///< the dialog that asked for its file is gone from the picture
   std::filesystem::path movie_directory_;
 };
 

@@ -1,11 +1,13 @@
 // The menus, and the dialogs opened by them.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/harness/environment.h"
 #include "broadmark/recordings/recording.h"
@@ -13,10 +15,29 @@
 #include "inspector/inspector.h"
 #include "inspector/session/share_page.h"
 #include "sources/source.h"
+#include "support/words.h"
 
 namespace broadmark {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// The visible part of a widget in the picture.
+Picture partOf(const Picture& whole, const WidgetPlace& place) {
+  const int left = static_cast<int>(place.min.x);
+  const int top = static_cast<int>(place.min.y);
+  Picture part{.width = static_cast<int>(place.max.x) - left,
+               .height = static_cast<int>(place.max.y) - top,
+               .rgba = {}};
+  for (int row = top; row < top + part.height; ++row) {
+    const auto begin = whole.rgba.begin() + std::ptrdiff_t{4} * (row * whole.width + left);
+    part.rgba.insert(part.rgba.end(), begin, begin + std::ptrdiff_t{4} * part.width);
+  }
+  return part;
+}
+
+}  // namespace
 
 void Inspector::drawMenus() {
   if (!ImGui::BeginMainMenuBar()) return;
@@ -76,18 +97,48 @@ void Inspector::askShare() {
               .extensions = {".html"},
               .suggestion = fs::path(fmt::format("frame {}.html", session_.playback.frame())),
               .chosen = [this](const fs::path& path) {
-                page_request_ = path;
-                page_is_due_ = false;
+                requestPicture(path, [this](const fs::path& file, const Picture& picture) {
+                  const AnswerText& answer = views_.first().answer();
+                  writeTextFile(file, sharePage(session_, answer, encodePng(picture)));
+                });
               }});
 }
 
-std::optional<fs::path> Inspector::takePageRequest() {
-  if (!page_request_ || !std::exchange(page_is_due_, true)) return {};
-  return std::exchange(page_request_, {});
+void Inspector::takeScreenshot() {
+  fs::path file;
+  int number = 0;
+  do {
+    file = fmt::format("broadmark-{:03}.png", ++number);
+  } while (fs::exists(file));
+  requestPicture(file, writePng);
 }
 
-std::string Inspector::page(std::string_view png) {
-  return sharePage(session_, views_.first().answer(), png);
+void Inspector::askSavePlot(const std::string& plot) {
+  const std::string name = fmt::format("{}.svg", fmt::join(splitAt('/', plot), " "));
+  files_.ask({.title = "Save the plot as SVG or PNG",
+              .purpose = FileDialog::Purpose::save,
+              .extensions = {".svg", ".png"},
+              .suggestion = fs::path(name),
+              .chosen = [this, plot](const fs::path& path) {
+                session_.notices.catchErrors([&] { savePlot(plot, path); });
+              }});
+}
+
+void Inspector::savePlot(const std::string& plot, fs::path path) {
+  if (!path.has_extension()) path += ".svg";
+  const bool is_svg = path.extension() == ".svg";
+  if (!is_svg && path.extension() != ".png") {
+    throw InputError(fmt::format("{}: a plot is saved as .svg or .png", path.string()));
+  }
+  ui_.requestSvg(plot);
+  requestPicture(path, [=, this](const fs::path& file, const Picture& picture) {
+    if (ui_.svg().empty()) throw InputError("the plot is no longer in view");
+    if (is_svg) {
+      writeTextFile(file, ui_.svg());
+    } else {
+      writePng(file, partOf(picture, *ui_.find(plot)));
+    }
+  });
 }
 
 void Inspector::askMovie() {

@@ -76,18 +76,9 @@ class Movie {
   std::optional<std::string> last_;
 };
 
-/// Writes a requested screenshot or page, and the picture of a movie.
+/// Writes a requested picture, and that of a movie.
 void writePictures(Inspector& inspector, Movie& movie, const std::function<Picture()>& picture) {
-  if (const auto path = inspector.takeScreenshotRequest()) {
-    inspector.session().notices.catchErrors([&] { writePng(*path, picture()); });
-  }
-  if (const auto path = inspector.takePageRequest()) {
-    Notices& notices = inspector.session().notices;
-    notices.catchErrors([&] {
-      writeTextFile(*path, inspector.page(encodePng(picture())));
-      notices.setStatus(fmt::format("written: {}", path->string()));
-    });
-  }
+  if (const auto write = inspector.takePictureRequest()) write(picture());
   movie.capture(inspector, picture);
 }
 

@@ -136,6 +136,8 @@ void addCases(Values& values, std::optional<OpenedResults>& results) {
   values["cases.marked"] = std::to_string(std::ranges::count_if(rows, &OpenedResults::Row::marked));
   values["cases.wrong"] = results ? std::to_string(results->wrongCount()) : "";
   values["cases.scaling"] = results ? std::to_string(results->scaling(Phase::total).size()) : "";
+  const bool compared = results && results->compared() != nullptr;
+  values["cases.compared"] = compared ? summaryText(results->compared()->comparison) : "";
   const bool any = results && !results->listed().empty();
   values["cases.first"] = any ? rows[results->listed().front()].result.id : "";
 }

@@ -134,10 +134,13 @@ class CasePlots : PanelContext {
       return results.rows()[curves[point.curve].points[point.point].row];
     };
     const ImVec2 size = ImGui::GetContentRegionAvail();
-    const PointPlotResult result = drawPointPlot(
-        "bodies", plotted, {.logarithmic = logarithmic_, .unit = "s", .across = "bodies"}, size.x,
-        size.y);
-    ui.note("plot");
+    const PointPlotResult result = drawPointPlot("bodies", plotted,
+                                                 {.logarithmic = logarithmic_,
+                                                  .unit = "s",
+                                                  .across = "bodies",
+                                                  .shapes = ui.beginPlot("plot")},
+                                                 size.x, size.y);
+    ui.endPlot("plot");
     for (const DrawnPoint& point : result.drawn) {
       ui.noteAt("point/" + row_of(point).result.id,
                 {point.at.x - kPointRadius, point.at.y - kPointRadius},

@@ -21,8 +21,9 @@ PlotResult PanelContext::plotFrames(const char* name, const std::vector<PlotCurv
   options.last = zoom.last();
   if (is_playback) options.playhead = session.playback.frame();
   const ImVec2 size = ImGui::GetContentRegionAvail();
+  options.shapes = ui.beginPlot(name);
   const PlotResult result = drawPlot(name, curves, options, size.x, size.y);
-  ui.note(name);
+  ui.endPlot(name);
   if (result.zoom != 0) zoom.zoom(result.zoom, result.zoom_at);
   if (result.moved != 0) zoom.scroll(result.moved);
   if (result.clicked_frame && is_playback) {

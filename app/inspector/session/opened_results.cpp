@@ -158,6 +158,15 @@ std::vector<ScalingCurve> OpenedResults::scalingCurves(Phase phase) const {
   return curves;
 }
 
+void OpenedResults::compareWith(const std::filesystem::path& baseline) {
+  auto compared = std::make_unique<Compared>();
+  compared->before = readResults(baseline);
+  compared->after = readResults(file_);
+  compared->comparison = compareResults({&compared->before, 1}, compared->after, {});
+  compared->table = comparisonTable(compared->comparison);
+  compared_ = std::move(compared);
+}
+
 void OpenedResults::sort(std::string_view column, bool descending) {
   const std::vector<CaseColumn>& columns = caseColumns();
   const auto found = std::ranges::find(columns, column, &CaseColumn::key);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "broadmark/render/frame_values.h"
 #include "broadmark/results/case_columns.h"
 #include "broadmark/results/results.h"
+#include "compare/comparison.h"
 
 namespace broadmark {
 
@@ -49,6 +51,14 @@ class OpenedResults {
     FrameValues mismatches;  ///< 1 in frames with a wrong answer, unknown in others
   };
 
+  /// These results, B, against others, A.
+  struct Compared {
+    NamedResults before;
+    NamedResults after;
+    Comparison comparison;
+    std::vector<std::vector<std::string>> table;  ///< from comparisonTable()
+  };
+
   /// Marks a few cases of one recording initially. `algorithms`: the available ones.
   OpenedResults(std::filesystem::path file, Results results,
                 const std::vector<Algorithm>& algorithms);
@@ -73,6 +83,12 @@ class OpenedResults {
   /// complete, correct cases with a measured time of the phase have points.
   const std::vector<ScalingCurve>& scaling(Phase phase);
 
+  /// Compares the file with a baseline. Reads both. Throws InputError.
+  void compareWith(const std::filesystem::path& baseline);
+  void endComparison() { compared_.reset(); }
+  /// Null: nothing is compared.
+  [[nodiscard]] const Compared* compared() const { return compared_.get(); }
+
   /// Indices of the listed rows, in display order.
   [[nodiscard]] const std::vector<std::size_t>& listed() const { return listed_; }
   /// Sorts by the column with this key; "": as in the file. Cases without a value always come last.
@@ -96,6 +112,7 @@ class OpenedResults {
   std::optional<Phase> curves_of_;  ///< nothing: `curves_` are outdated
   std::vector<ScalingCurve> scaling_;
   std::optional<Phase> scaling_of_;  ///< nothing: `scaling_` is outdated
+  std::unique_ptr<const Compared> compared_;
 };
 
 }  // namespace broadmark

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "inspector/ui/terms.h"
 #include "inspector/ui/ui.h"
@@ -13,6 +15,9 @@ namespace broadmark {
 namespace {
 
 constexpr std::size_t kShortHeading = 9;  // characters; a longer one gets two lines
+
+/// Whether a column has marks instead of values; such columns come first.
+bool isMark(std::string_view column) { return column.starts_with("##"); }
 
 }  // namespace
 
@@ -39,12 +44,18 @@ bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, i
                          {widthOfWholeColumns(name, always), height})) {
     return false;
   }
-  ImGui::TableSetupScrollFreeze(1, 1);
-  for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
+  const auto marks = static_cast<int>(
+      std::ranges::count_if(columns, isMark));
+  ImGui::TableSetupScrollFreeze(marks + 1, 1);
+  for (const std::string& column : columns) {
+    ImGui::TableSetupColumn(column.c_str(), isMark(column) ? ImGuiTableColumnFlags_NoSort : 0);
+  }
   headings(columns);
   begins_tables_ = in_table_ = true;
+  copied_row_ = 0;
   if (copies_tables_) {
-    copied_ += fmt::format("{}{}", copied_.empty() ? "" : "\n", fmt::join(columns, "\t"));
+    const auto named = std::span(columns).subspan(static_cast<std::size_t>(marks));
+    copied_ += fmt::format("{}{}", copied_.empty() ? "" : "\n", fmt::join(named, "\t"));
   }
   return true;
 }
@@ -57,7 +68,8 @@ void Ui::endTable() {
 
 void Ui::copyCell(std::string_view text) {
   if (!copies_tables_ || !in_table_) return;
-  copied_ += ImGui::TableGetColumnIndex() == 0 ? '\n' : '\t';
+  const bool is_first = std::exchange(copied_row_, ImGui::TableGetRowIndex()) != copied_row_;
+  copied_ += is_first ? '\n' : '\t';
   copied_ += text.substr(0, text.find("##"));
 }
 

@@ -36,6 +36,12 @@ constexpr std::pair<std::string_view, const char*> kTerms[] = {
     {"rank", "Place; algorithms of one place do not differ"},
     {"ratio", "Time relative to the first algorithm, median of the rounds"},
     {"95 % interval", "The ratio is within it with a probability of 95 %"},
+    // Two files.
+    {"case", "Recording and algorithm; a click opens it"},
+    {"A", "Time of a frame in the baseline"},
+    {"B", "Time of a frame in the opened file"},
+    {"B/A", "Above 1: slower than the baseline; without what all cases have in common"},
+    {"verdict", "What the interval of the ratio tells, as broadmark compare does"},
     // Answers.
     {"pairs", "Reported pairs"},
     {"missed", "Pairs that overlap and are not reported"},

@@ -95,6 +95,9 @@ void Ui::beforePicture() {
 void Ui::begin() {
   if (!copied_.empty()) ImGui::SetClipboardText(copied_.c_str());
   copied_.clear();
+  former_plots_ = std::exchange(plots_, {});
+  svg_of_ = std::exchange(svg_requested_, {});
+  svg_.clear();
   copies_tables_ = std::exchange(copy_requested_, false);
   has_tables_ = std::exchange(begins_tables_, false);
   places_.clear();
@@ -370,31 +373,29 @@ void drawHistogram(Ui& ui, std::span<const double> values,
   const ImVec2 size = {ImGui::GetContentRegionAvail().x,
                        std::max(ImGui::GetContentRegionAvail().y - line_height, line_height)};
   const float bottom = corner.y + size.y;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  PlotCanvas draw(ui.beginPlot("histogram"));
   const auto max_count = static_cast<float>(*std::ranges::max_element(histogram.counts));
   const float width = size.x / static_cast<float>(kBins);
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const float left = corner.x + width * static_cast<float>(bin);
     const float height = size.y * static_cast<float>(histogram.counts[bin]) / max_count;
-    draw.AddRectFilled({left, bottom - height}, {left + width - 1, bottom},
-                       colour(ui.theme.accent));
+    draw.filledRect({left, bottom - height}, {left + width - 1, bottom}, colour(ui.theme.accent));
   }
   if (line && histogram.low < *line && *line < histogram.high) {
     const double share = (*line - histogram.low) / (histogram.high - histogram.low);
     const float x = corner.x + size.x * static_cast<float>(share);
-    draw.AddLine({x, corner.y}, {x, bottom}, colour(ui.theme.warning), 2 * ui.scale);
+    draw.line({x, corner.y}, {x, bottom}, colour(ui.theme.warning), 2 * ui.scale);
   }
   const auto label = [&](double value, float share) {
     const std::string number = text(value);
     const float extent = ImGui::CalcTextSize(number.c_str()).x;
-    draw.AddText({corner.x + share * (size.x - extent), bottom}, colour(ui.theme.faint),
-                 number.c_str());
+    draw.text({corner.x + share * (size.x - extent), bottom}, colour(ui.theme.faint), number);
     return extent;
   };
   const float ends = label(histogram.low, 0) + label(histogram.high, 1);
   if (size.x > 2 * ends) label((histogram.low + histogram.high) / 2, 0.5F);
-  ImGui::Dummy(size);
-  ui.note("histogram");
+  ImGui::Dummy({size.x, std::max(ImGui::GetContentRegionAvail().y, size.y)});
+  ui.endPlot("histogram");
 }
 
 void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags) {

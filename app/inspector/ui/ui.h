@@ -18,6 +18,7 @@
 
 #include "broadmark/parameters.h"
 #include "broadmark/render/palette.h"
+#include "broadmark/render/plot_canvas.h"
 #include "inspector/ui/glyph_atlas.h"
 
 namespace broadmark {
@@ -124,7 +125,7 @@ class Ui {
   /// Draws right-aligned text on the line of the last item.
   void rightAligned(std::string_view text, Rgb rgb);
   /// Begins a table with headings that explain their terms and sort its rows, see sortedRows(). If
-  /// it returns true, call endTable().
+  /// it returns true, call endTable(). Columns named "##…", which come first, have marks.
   bool beginTable(const char* name, const std::vector<std::string>& columns, int always,
                   float height = 0);
   void endTable();
@@ -132,6 +133,8 @@ class Ui {
   void copyTables() { copy_requested_ = true; }
   /// Whether the last picture had a table.
   [[nodiscard]] bool hasTables() const { return has_tables_; }
+  /// Whether this picture's tables are copied.
+  [[nodiscard]] bool copiesTables() const { return copies_tables_; }
   /// Draws the row of headings with these names.
   void headings(const std::vector<std::string>& names);
   using SortKey = std::variant<double, std::string>;
@@ -141,6 +144,16 @@ class Ui {
   /// Draws text in the next cell of a table.
   void cell(std::string_view text);
   void cell(std::string_view text, Rgb rgb);
+  /// Call before drawing a plot. Returns its shapes if they are needed, see PlotCanvas; or null.
+  std::vector<PlotShape>* beginPlot(std::string_view label);
+  /// Call when the plot is the last item: registers it. The right mouse button offers to save it.
+  void endPlot(std::string_view label);
+  /// Name of the plot last under the mouse, or the first in the last picture; "": it has none.
+  [[nodiscard]] std::string plotInUse() const;
+  /// Draws the plot of this name as SVG in the next picture, too.
+  void requestSvg(std::string plot) { svg_requested_ = std::move(plot); }
+  /// That SVG; "": the plot was not drawn.
+  [[nodiscard]] const std::string& svg() const { return svg_; }
   /// Draws a name and a value in two columns.
   void valueRow(const char* name, std::string_view value);
   void plain(std::string_view text);
@@ -163,6 +176,8 @@ class Ui {
   /// Scrolls to this widget when it is drawn next.
   void reveal(std::string name) { revealed_ = std::move(name); }
 
+  /// Called with the name of a plot to save.
+  std::function<void(const std::string&)> on_save_plot;
   /// Called with a message when an entered number is clamped.
   std::function<void(const std::string&)> on_correction;
 
@@ -199,7 +214,16 @@ class Ui {
   bool copy_requested_ = false;
   bool copies_tables_ = false;  ///< in this picture
   bool in_table_ = false;
+  int copied_row_ = 0;  ///< of the table
   std::string copied_;
+
+  std::vector<std::string> plots_;         ///< names, in this picture so far
+  std::vector<std::string> former_plots_;  ///< in the last one
+  std::string hovered_plot_;               ///< last under the mouse
+  std::string svg_requested_;
+  std::string svg_of_;  ///< the plot drawn as SVG in this picture
+  std::vector<PlotShape> shapes_;
+  std::string svg_;
 };
 
 /// Returns the text, truncated with "…" if wider than `max_width`. `font` null: the current font.
@@ -224,18 +248,20 @@ struct SplitPane {
   void draw(const std::function<void()>& first, const std::function<void()>& second) const;
 };
 
-/// Draws the visible rows of `count`.
+/// Draws the visible rows of `count`; all of them, if `unclipped`.
 template <class Row>
-void clipped(std::size_t count, const Row& row) {
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(count));
-  while (clipper.Step()) {
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+void clipped(std::size_t count, const Row& row, bool unclipped = false) {
+  const auto draw = [&row](int from, int to) {
+    for (int i = from; i < to; ++i) {
       ImGui::PushID(i);
       row(static_cast<std::size_t>(i));
       ImGui::PopID();
     }
-  }
+  };
+  if (unclipped) return draw(0, static_cast<int>(count));
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(count));
+  while (clipper.Step()) draw(clipper.DisplayStart, clipper.DisplayEnd);
 }
 
 inline constexpr float kSplitterSize = 5;  ///< units

@@ -9,6 +9,7 @@
 
 #include "broadmark/render/colour.h"
 #include "broadmark/render/frame_values.h"
+#include "broadmark/render/plot_canvas.h"
 
 namespace broadmark {
 
@@ -53,6 +54,7 @@ struct PlotOptions {
   double least_top = 0;       ///< the scale of a stack reaches at least this value
   std::string title;          ///< in the upper left corner
   bool frame_numbers = true;  ///< below the axes
+  std::vector<PlotShape>* shapes = nullptr;  ///< see PlotCanvas
 };
 
 /// The user's input.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "broadmark/render/colour.h"
+#include "broadmark/render/plot_canvas.h"
 
 namespace broadmark {
 
@@ -24,9 +25,10 @@ struct PointCurve {
 };
 
 struct PointPlotOptions {
-  bool logarithmic = false;  ///< the vertical axis; the horizontal one always is
-  const char* unit = "s";    ///< of the values, as in PlotOptions
-  const char* across = "";   ///< name of the horizontal axis: "bodies"
+  bool logarithmic = false;                  ///< the vertical axis; the horizontal one always is
+  const char* unit = "s";                    ///< of the values, as in PlotOptions
+  const char* across = "";                   ///< name of the horizontal axis: "bodies"
+  std::vector<PlotShape>* shapes = nullptr;  ///< see PlotCanvas
 };
 
 /// A drawn point: its indices, and its position in the window.
