@@ -384,7 +384,7 @@ class InvariantVisitor final : public ColumnVisitor {
       : kernels_(kernels), boxes_(boxes) {}
 
   /// Checks that every column of a grid holds exactly the bodies that overlap it.
-  void checkBins(const ColumnGrid& grid, std::span<const CellBody> bodies) {
+  [[gnu::cold]] void checkBins(const ColumnGrid& grid, std::span<const CellBody> bodies) {
     std::vector<std::vector<CellBody>> expected(grid.layout.size());
     BoxBlock block;
     for (const CellBody body : bodies) {

@@ -61,7 +61,7 @@ class LooseGrid {
 
   void draw(DebugDraw& draw) const;
   /// "" or the broken invariant. Not within a frame.
-  [[nodiscard]] std::string validate() const;
+  [[nodiscard, gnu::cold]] std::string validate() const;
 
  private:
   /// A body with packed bounds that overlap a query.
