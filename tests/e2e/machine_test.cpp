@@ -50,7 +50,8 @@ class Machine : public EndToEnd {
   static constexpr const char* kAlgorithms =
       "bf,sap-simd-mt,grid-sap-mt,kd-mt,columns-mt,tide,dbvt-d";
   static constexpr const char* kCall =
-      "broadmark --headless scene.aabbs --check full --quiet --json r.json --algorithm {}";
+      "broadmark --headless scene.aabbs --check full --time-limit 60 --quiet --json r.json "
+      "--algorithm {}";
 };
 
 TEST_F(Machine, OneCore) {
