@@ -2,8 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace broadmark {
 namespace {
+
+#if defined(__EMSCRIPTEN__)
+constexpr char kShaderHeader[] =
+    "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n";
+#else
+constexpr char kShaderHeader[] = "#version 330 core\n";
+#endif
 
 template <class GetParameter, class GetLog>
 void checkBuilt(GLuint id, GLenum status, GetParameter parameter, GetLog get_log,
@@ -22,9 +31,11 @@ void checkBuilt(GLuint id, GLenum status, GetParameter parameter, GetLog get_log
 
 GlObject makeShader(const Gl& gl, GLenum type, std::string_view source) {
   GlObject shader(gl.CreateShader(type), gl.DeleteShader);
-  const GLchar* text = source.data();
-  const auto length = static_cast<GLint>(source.size());
-  gl.ShaderSource(shader.get(), 1, &text, &length);
+  const std::string header =
+      fmt::format("{}#define PRIMITIVES_PER_ROW {}\n", kShaderHeader, kPrimitivesPerRow);
+  const std::array texts = {header.data(), source.data()};
+  const std::array lengths = {static_cast<GLint>(header.size()), static_cast<GLint>(source.size())};
+  gl.ShaderSource(shader.get(), static_cast<GLsizei>(texts.size()), texts.data(), lengths.data());
   gl.CompileShader(shader.get());
   checkBuilt(
       shader.get(), GL_COMPILE_STATUS, gl.GetShaderiv, gl.GetShaderInfoLog,

@@ -9,14 +9,15 @@
 namespace broadmark {
 namespace {
 
-constexpr std::size_t kTexelsPerPrimitive = 2;
+constexpr GLsizei kTexelsPerPrimitive = 2;
+constexpr GLsizei kRowTexels = kTexelsPerPrimitive * kPrimitivesPerRow;
 
 std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t requested) {
-  const auto texels = static_cast<std::size_t>(gl.integer(GL_MAX_TEXTURE_BUFFER_SIZE));
+  const auto rows = static_cast<std::size_t>(gl.integer(GL_MAX_TEXTURE_SIZE));
   // gl_VertexID is a signed 32-bit integer.
   const auto vertices = static_cast<std::size_t>(std::numeric_limits<GLsizei>::max());
   return std::max<std::size_t>(
-      1, std::min({requested, texels / kTexelsPerPrimitive,
+      1, std::min({requested, rows * kPrimitivesPerRow,
                    vertices / static_cast<std::size_t>(vertices_per_primitive)}));
 }
 
@@ -43,14 +44,20 @@ PrimitiveBuffer PrimitiveRenderer::upload(std::span<const Primitive> primitives)
 }
 
 PrimitiveBuffer::Batch PrimitiveRenderer::makeBatch(std::span<const Primitive> primitives) const {
-  PrimitiveBuffer::Batch batch{makeObject(gl_->GenBuffers, gl_->DeleteBuffers),
-                               makeObject(gl_->GenTextures, gl_->DeleteTextures),
-                               static_cast<GLsizei>(primitives.size()) * vertices_per_primitive_};
-  gl_->BindBuffer(GL_TEXTURE_BUFFER, batch.buffer.get());
-  gl_->BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(primitives.size_bytes()),
-                  primitives.data(), GL_STATIC_DRAW);
-  gl_->BindTexture(GL_TEXTURE_BUFFER, batch.texture.get());
-  gl_->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, batch.buffer.get());
+  const auto count = static_cast<GLsizei>(primitives.size());
+  PrimitiveBuffer::Batch batch{makeObject(gl_->GenTextures, gl_->DeleteTextures),
+                               count * vertices_per_primitive_};
+  const GLsizei rows = count / kPrimitivesPerRow;
+  const GLsizei rest = count % kPrimitivesPerRow;
+  gl_->BindTexture(GL_TEXTURE_2D, batch.texture.get());
+  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kRowTexels, rows + (rest > 0 ? 1 : 0), 0, GL_RGBA,
+                  GL_FLOAT, nullptr);
+  gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kRowTexels, rows, GL_RGBA, GL_FLOAT,
+                     primitives.data());
+  gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, kTexelsPerPrimitive * rest, rest > 0 ? 1 : 0,
+                     GL_RGBA, GL_FLOAT, primitives.last(static_cast<std::size_t>(rest)).data());
   return batch;
 }
 
@@ -99,7 +106,7 @@ void PrimitiveRenderer::draw(const PrimitiveBuffer& primitives, const Viewpoint&
 
   gl_->BindVertexArray(vertex_array_.get());
   for (const PrimitiveBuffer::Batch& batch : primitives.batches_) {
-    gl_->BindTexture(GL_TEXTURE_BUFFER, batch.texture.get());
+    gl_->BindTexture(GL_TEXTURE_2D, batch.texture.get());
     gl_->DrawArrays(GL_TRIANGLES, 0, batch.vertices);
   }
   gl_->check("drawing boxes and lines");

@@ -1,5 +1,5 @@
 // Draws many small primitives (boxes, lines) by vertex pulling: a primitive is two texels of a
-// buffer texture, and the vertex shader computes primitive and corner from gl_VertexID, without
+// texture, and the vertex shader computes primitive and corner from gl_VertexID, without
 // vertex attributes or indices. Faster than instancing for small boxes and on software renderers.
 #pragma once
 
@@ -31,7 +31,6 @@ class PrimitiveBuffer {
  private:
   friend class PrimitiveRenderer;
   struct Batch {
-    GlObject buffer;
     GlObject texture;
     GLsizei vertices = 0;
   };
@@ -42,7 +41,7 @@ class PrimitiveBuffer {
 /// its lifetime.
 class PrimitiveRenderer {
  public:
-  /// Draws at most `max_batch` primitives per call, or fewer if the driver's buffer textures are
+  /// Draws at most `max_batch` primitives per call, or fewer if the driver's textures are
   /// smaller. Throws RenderError.
   PrimitiveRenderer(const Gl& gl, std::string_view vertex_source, std::string_view fragment_source,
                     int vertices_per_primitive,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "render_assets.h"
 
@@ -28,15 +29,19 @@ UiRenderer::UiRenderer(const Gl& gl)
   gl.BindVertexArray(vertex_array_.get());
   gl.BindBuffer(GL_ARRAY_BUFFER, vertices_.get());
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
+  for (GLuint location = 0; location < 3; ++location) gl.EnableVertexAttribArray(location);
+  gl.check("preparing the user interface");
+}
+
+void UiRenderer::setFirstVertex(std::size_t vertex) const {
   const auto attribute = [&](GLuint location, GLint count, GLenum type, GLboolean normalised,
                              std::size_t at) {
-    gl.EnableVertexAttribArray(location);
-    gl.VertexAttribPointer(location, count, type, normalised, sizeof(ImDrawVert), offset(at));
+    gl_->VertexAttribPointer(location, count, type, normalised, sizeof(ImDrawVert),
+                             offset(vertex * sizeof(ImDrawVert) + at));
   };
   attribute(0, 2, GL_FLOAT, GL_FALSE, offsetof(ImDrawVert, pos));
   attribute(1, 2, GL_FLOAT, GL_FALSE, offsetof(ImDrawVert, uv));
   attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(ImDrawVert, col));
-  gl.check("preparing the user interface");
 }
 
 void UiRenderer::uploadFonts(ImFontAtlas& atlas) {
@@ -71,8 +76,14 @@ void UiRenderer::draw(const ImDrawData& data) {
                     GL_STREAM_DRAW);
     gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data,
                     GL_STREAM_DRAW);
+    unsigned first_vertex = 0;
+    setFirstVertex(first_vertex);
     for (const ImDrawCmd& command : list.CmdBuffer) {
-      if (command.UserCallback == nullptr) drawCommand(command, data);
+      if (command.UserCallback != nullptr) continue;
+      if (std::exchange(first_vertex, command.VtxOffset) != command.VtxOffset) {
+        setFirstVertex(first_vertex);
+      }
+      drawCommand(command, data);
     }
   }
   gl_->Disable(GL_SCISSOR_TEST);
@@ -90,10 +101,9 @@ void UiRenderer::drawCommand(const ImDrawCmd& command, const ImDrawData& data) c
   gl_->Scissor(static_cast<GLint>(left), static_cast<GLint>(data.DisplaySize.y - bottom),
                static_cast<GLsizei>(right - left), static_cast<GLsizei>(bottom - top));
   gl_->BindTexture(GL_TEXTURE_2D, textureName(command.TextureId));
-  gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount),
-                              sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
-                              offset(command.IdxOffset * sizeof(ImDrawIdx)),
-                              static_cast<GLint>(command.VtxOffset));
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount),
+                    sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
+                    offset(command.IdxOffset * sizeof(ImDrawIdx)));
 }
 
 }  // namespace broadmark

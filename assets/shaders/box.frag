@@ -1,4 +1,3 @@
-#version 330 core
 // A face with dark edges of even width in pixels, fading with distance.
 uniform vec3 haze;
 uniform float focus;  // distance from the eye to what it looks at

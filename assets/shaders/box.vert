@@ -1,6 +1,5 @@
-#version 330 core
-// A box pulled from the buffer texture: 18 vertices, the three faces that look at the eye.
-uniform samplerBuffer primitives;
+// A box pulled from the texture of primitives, PRIMITIVES_PER_ROW in a row: 18 vertices, the three faces that look at the eye.
+uniform sampler2D primitives;
 uniform mat4 view_projection;
 uniform vec3 eye;
 uniform float pixel;  // length that a pixel covers at distance 1
@@ -19,8 +18,9 @@ const vec2 kCorners[6] =
 void main() {
   int primitive = gl_VertexID / 18;
   int axis = (gl_VertexID % 18) / 6;
-  vec4 from = texelFetch(primitives, 2 * primitive);
-  vec4 to = texelFetch(primitives, 2 * primitive + 1);
+  ivec2 texel = ivec2(2 * (primitive % PRIMITIVES_PER_ROW), primitive / PRIMITIVES_PER_ROW);
+  vec4 from = texelFetch(primitives, texel, 0);
+  vec4 to = texelFetch(primitives, texel + ivec2(1, 0), 0);
 
   vec3 centre = 0.5 * (from.xyz + to.xyz);
   float depth = (view_projection * vec4(centre, 1)).w;

@@ -1,13 +1,12 @@
-#version 330 core
-// A line pulled from the buffer texture, widened on the screen to a rectangle of two triangles.
-uniform samplerBuffer primitives;
+// A line pulled from the texture of primitives (see box.vert), widened on the screen to a rectangle of two triangles.
+uniform sampler2D primitives;
 uniform mat4 view_projection;
 uniform vec3 eye;
 uniform vec2 viewport;  // pixels
 uniform float lift;     // part of the way to the eye, from shading.h
 
-noperspective out float across;  // pixels from the middle of the line
-flat out float half_width;       // pixels
+out float across_w;         // pixels from the middle of the line, times w: linear on the screen
+flat out float half_width;  // pixels
 flat out vec3 line_colour;
 
 const float kNearest = 1e-3;  // clip w: what lies nearer, or behind the eye, is cut off
@@ -17,8 +16,9 @@ const vec2 kCorners[6] =
 
 void main() {
   int primitive = gl_VertexID / 6;
-  vec4 from = texelFetch(primitives, 2 * primitive);
-  vec4 to = texelFetch(primitives, 2 * primitive + 1);
+  ivec2 texel = ivec2(2 * (primitive % PRIMITIVES_PER_ROW), primitive / PRIMITIVES_PER_ROW);
+  vec4 from = texelFetch(primitives, texel, 0);
+  vec4 to = texelFetch(primitives, texel + ivec2(1, 0), 0);
   int rgb = int(from.w);
   line_colour = vec3(rgb >> 16, (rgb >> 8) & 255, rgb & 255) / 255.0;
 
@@ -38,8 +38,9 @@ void main() {
 
   vec2 corner = kCorners[gl_VertexID % 6];
   half_width = 0.5 * to.w;
-  across = corner.y * (half_width + 1.0);  // one pixel more for the smooth border
+  float across = corner.y * (half_width + 1.0);  // one pixel more for the smooth border
   vec4 position = corner.x == 0.0 ? a : b;
   position.xy += normal * across * 2.0 / viewport * position.w;
+  across_w = across * position.w;
   gl_Position = position;
 }

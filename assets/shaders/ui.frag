@@ -1,4 +1,3 @@
-#version 330 core
 uniform sampler2D image;  // letters, or a picture
 
 in vec2 uv;

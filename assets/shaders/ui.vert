@@ -1,4 +1,3 @@
-#version 330 core
 // The user interface: triangles in pixels from the upper left corner.
 uniform vec2 viewport;  // pixels
 

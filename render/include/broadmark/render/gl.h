@@ -1,4 +1,4 @@
-// A table of the OpenGL 3.3 functions in use. The library that created the context (EGL, OSMesa,
+// A table of the functions in use, of OpenGL 3.3 and of WebGL 2. The library that created the context (EGL, OSMesa,
 // GLFW) fills it, because no loader library works with all three.
 #pragma once
 
@@ -24,15 +24,18 @@ namespace broadmark {
   X(FramebufferRenderbuffer) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures)  \
   X(GenVertexArrays) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) X(GetProgramiv)              \
   X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram)            \
-  X(PixelStorei) X(ReadPixels) X(RenderbufferStorageMultisample) X(ShaderSource) X(TexBuffer)     \
+  X(PixelStorei) X(ReadPixels) X(RenderbufferStorageMultisample) X(ShaderSource)                  \
   X(Uniform1f) X(Uniform2f) X(Uniform3f) X(UniformMatrix4fv) X(UseProgram) X(Viewport)            \
-  X(EnableVertexAttribArray) X(VertexAttribPointer) X(DrawElementsBaseVertex) X(Scissor)          \
+  X(EnableVertexAttribArray) X(VertexAttribPointer) X(DrawElements) X(Scissor)                    \
   X(TexImage2D) X(TexParameteri) X(TexSubImage2D) X(FramebufferTexture2D) X(DepthRange) X(Finish) \
   X(ColorMask)
 // clang-format on
 
 /// Address of a GL function, or null.
 using GlLoader = std::function<void*(const char* name)>;
+
+/// In the texture that holds them; shaders know it as PRIMITIVES_PER_ROW.
+inline constexpr int kPrimitivesPerRow = 1024;
 
 /// The function table of a context.
 struct Gl {

@@ -22,6 +22,8 @@ class UiRenderer {
   void draw(const ImDrawData& data);
 
  private:
+  /// Makes a vertex of the buffer the first one, which indices count from.
+  void setFirstVertex(std::size_t vertex) const;
   void drawCommand(const ImDrawCmd& command, const ImDrawData& data) const;
 
   const Gl* gl_;
