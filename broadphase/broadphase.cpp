@@ -42,8 +42,8 @@ std::span<const Pair> published(PairRun run) {
 Isa isaOf(InstructionSet set) {
   constexpr std::pair<InstructionSet, Isa> kIsaOf[] = {
       {InstructionSet::scalar, Isa::scalar}, {InstructionSet::sse2, Isa::sse2},
-      {InstructionSet::neon, Isa::neon},     {InstructionSet::avx2, Isa::avx2},
-      {InstructionSet::avx512, Isa::avx512},
+      {InstructionSet::neon, Isa::neon},     {InstructionSet::simd128, Isa::simd128},
+      {InstructionSet::avx2, Isa::avx2},     {InstructionSet::avx512, Isa::avx512},
   };
   if (set == InstructionSet::best) return bestIsa();
   for (const auto& [option, isa] : kIsaOf) {

@@ -12,6 +12,11 @@ function(broadmark_configure target)
     $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical$<SEMICOLON>-Wno-deprecated-declarations$<SEMICOLON>-Wno-enum-constexpr-conversion>
     -ffp-contract=off -fno-semantic-interposition -falign-functions=64
     $<$<BOOL:${BROADMARK_WERROR}>:-Werror>)
+  if(EMSCRIPTEN)
+    target_compile_options(${target} PRIVATE -Wno-unused-command-line-argument
+      -DXXH_VECTOR=0 -include ${PROJECT_SOURCE_DIR}/app/web/compat/missing.h)
+    target_include_directories(${target} SYSTEM PRIVATE ${PROJECT_SOURCE_DIR}/app/web/compat)
+  endif()
   if(BROADMARK_SANITIZE)
     target_compile_options(${target} PUBLIC -fsanitize=${BROADMARK_SANITIZE}
       -fno-omit-frame-pointer -fno-sanitize-recover=all)

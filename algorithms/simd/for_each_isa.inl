@@ -1,6 +1,7 @@
 // Compiles the file named by BROADMARK_KERNELS once for each instruction set, in the namespaces
-// broadmark::simd::scalar, sse2, avx2 and avx512 (on ARM scalar and neon), each with its own Vector
-// (vector_*.inl). BROADMARK_AVX512 is defined while compiling for AVX-512.
+// broadmark::simd::scalar, sse2, avx2 and avx512 (on ARM scalar and neon, in WebAssembly scalar and
+// simd128), each with its own Vector (vector_*.inl). BROADMARK_AVX512 is defined while compiling
+// for AVX-512.
 //
 // Only these functions are compiled for a target: with -mavx2 for a whole file, the linker might
 // keep the AVX2 versions of shared inline functions for the entire program. So kernels must not
@@ -11,6 +12,8 @@
 #include <immintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -70,6 +73,13 @@ namespace neon {  // part of the baseline: no target to set
 #include BROADMARK_KERNELS
 }  // namespace neon
 
+#elif defined(__wasm_simd128__)
+
+namespace simd128 {  // a flag of the whole program: no target to set
+#include "simd/vector_simd128.inl"
+#include BROADMARK_KERNELS
+}  // namespace simd128
+
 #endif
 
 /// kKernels for an instruction set, which this processor must support.
@@ -85,6 +95,9 @@ const auto& kernelsFor(Isa isa) {
 #elif defined(__aarch64__)
     case Isa::neon:
       return neon::kKernels;
+#elif defined(__wasm_simd128__)
+    case Isa::simd128:
+      return simd128::kKernels;
 #endif
     default:
       return scalar::kKernels;

@@ -93,8 +93,6 @@ struct CellBlock {
     }
     return active;
   }();
-  static_assert(sizeof(std::uintptr_t) == sizeof(std::uint64_t));
-
   constexpr std::int32_t kCell = 1 << GridLayout::kCellBits;
   const PackedBounds in_first = GridLayout::packQuery(block.query);
   const PackedBounds in_second =
@@ -107,7 +105,14 @@ struct CellBlock {
     is_second |= kSecond[axis] & kAxisBytes << 8 * axis;
   }
   const BucketVector packed = (~is_second & in_first) | (is_second & in_second);
-  std::memcpy(static_cast<void*>(query.buckets), &buckets, sizeof(buckets));
+  if constexpr (sizeof(query.buckets) == sizeof(buckets)) {
+    std::memcpy(static_cast<void*>(query.buckets), &buckets, sizeof(buckets));
+  } else {  // addresses of four bytes
+    for (int i = 0; i < 8; ++i) {
+      query.buckets[i] =
+          reinterpret_cast<const CellBucket*>(static_cast<std::uintptr_t>(buckets[i]));
+    }
+  }
   std::memcpy(query.packed, &packed, sizeof(packed));
   query.active = kActive[axesWhere(block.has_second)];
 }

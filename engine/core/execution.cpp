@@ -82,6 +82,9 @@ bool isaSupported(Isa isa) {
 #elif defined(__aarch64__)
     case Isa::neon:
       return true;  // part of the baseline
+#elif defined(__wasm_simd128__)
+    case Isa::simd128:
+      return true;  // the program would not start without
 #endif
     default:
       return false;

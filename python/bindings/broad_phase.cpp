@@ -48,6 +48,7 @@ constexpr NameTable kInstructionSets{{NamedValue{InstructionSet::best, "auto"},
                                       {InstructionSet::scalar, "scalar"},
                                       {InstructionSet::sse2, "sse2"},
                                       {InstructionSet::neon, "neon"},
+                                      {InstructionSet::simd128, "simd128"},
                                       {InstructionSet::avx2, "avx2"},
                                       {InstructionSet::avx512, "avx512"}}};
 

@@ -17,7 +17,7 @@ from broadmark.errors import InputError
 from broadmark.results import Results, read_results
 
 #: Instruction sets in ascending order of vector width.
-ISAS = ["scalar", "sse2", "neon", "avx2", "avx512"]
+ISAS = ["scalar", "sse2", "neon", "simd128", "avx2", "avx512"]
 
 #: The columns that identify a recording in titles. Recordings that are equal in them conflict.
 RECORDING = ["scene", "object_type", "objects"]

@@ -81,8 +81,8 @@ inline std::vector<bp::Options> allOptions() {
 inline std::vector<bp::InstructionSet> instructionSets() {
   constexpr std::pair<Isa, bp::InstructionSet> kSets[] = {
       {Isa::scalar, bp::InstructionSet::scalar}, {Isa::sse2, bp::InstructionSet::sse2},
-      {Isa::neon, bp::InstructionSet::neon},     {Isa::avx2, bp::InstructionSet::avx2},
-      {Isa::avx512, bp::InstructionSet::avx512},
+      {Isa::neon, bp::InstructionSet::neon},     {Isa::simd128, bp::InstructionSet::simd128},
+      {Isa::avx2, bp::InstructionSet::avx2},     {Isa::avx512, bp::InstructionSet::avx512},
   };
   std::vector<bp::InstructionSet> sets;
   for (const auto& [isa, set] : kSets) {

@@ -180,7 +180,8 @@ TEST(ThreadTeamDeathTest, TooManyThreadsThrow) {
 TEST(Isa, NamesAreDistinctAndScalarAlwaysRuns) {
   std::set<std::string_view> names;
   for (const auto& [isa, name] : kIsas.entries) names.insert(name);
-  EXPECT_EQ(names, (std::set<std::string_view>{"scalar", "sse2", "neon", "avx2", "avx512"}));
+  EXPECT_EQ(names,
+            (std::set<std::string_view>{"scalar", "sse2", "neon", "simd128", "avx2", "avx512"}));
   EXPECT_TRUE(isaSupported(Isa::scalar));
 }
 

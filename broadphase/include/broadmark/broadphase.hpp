@@ -86,7 +86,7 @@ enum class Order {
   sorted,  ///< ascending by a, then b: independent of threads, processor, method and history
   any      ///< as found; may differ between processors, and after restore()
 };
-enum class InstructionSet { best, scalar, sse2, neon, avx2, avx512 };
+enum class InstructionSet { best, scalar, sse2, neon, avx2, avx512, simd128 };
 /// What is done with the ids given to update(boxes, changed).
 enum class Changes {
   verified,  ///< all boxes are compared; a changed body that is not listed throws

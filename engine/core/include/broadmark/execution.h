@@ -28,11 +28,12 @@
 
 namespace broadmark {
 
-enum class Isa { scalar, sse2, neon, avx2, avx512 };
+enum class Isa { scalar, sse2, neon, simd128, avx2, avx512 };
 /// All instruction sets, narrowest first.
 inline constexpr NameTable kIsas{{NamedValue{Isa::scalar, "scalar"},
                                   {Isa::sse2, "sse2"},
                                   {Isa::neon, "neon"},
+                                  {Isa::simd128, "simd128"},
                                   {Isa::avx2, "avx2"},
                                   {Isa::avx512, "avx512"}}};
 constexpr std::string_view isaName(Isa isa) { return kIsas.nameOf(isa); }
