@@ -13,6 +13,19 @@ function(broadmark_embed target header)
     list(APPEND paths ${path})
     string(APPEND declarations
       "std::string_view ${name}();  // NOLINT(readability-identifier-naming): the file's name\n")
+    if(EMSCRIPTEN)
+      string(APPEND definitions "
+namespace {
+const unsigned char ${header}_${name}[] = {
+#embed \"${path}\"
+};
+}
+std::string_view broadmark::${header}::${name}() {
+  return {reinterpret_cast<const char*>(${header}_${name}), sizeof ${header}_${name}};
+}
+")
+      continue()
+    endif()
     # .incbin takes files of any size; a C++ literal is slow to compile and limited in length.
     string(APPEND definitions "
 asm(R\"(.pushsection .rodata

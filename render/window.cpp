@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace broadmark {
@@ -60,6 +61,9 @@ Window::Window(const std::string& title, int width, int height) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+#if defined(__EMSCRIPTEN__)
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);  // a pixel of the canvas is one of the screen
+#endif
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
     int free_width = width;
     int free_height = height;
@@ -178,6 +182,15 @@ void Window::setClipboard(const std::string& text) {
 }
 
 void* Window::function(const char* name) {
+#if defined(__EMSCRIPTEN__)  // WebGL has it for floats alone
+  constexpr auto kDepthRange = [](double near, double far) {
+    reinterpret_cast<void (*)(float, float)>(glfwGetProcAddress("glDepthRangef"))(
+        static_cast<float>(near), static_cast<float>(far));
+  };
+  if (std::string_view(name) == "glDepthRange") {
+    return reinterpret_cast<void*>(+kDepthRange);
+  }
+#endif
   return reinterpret_cast<void*>(glfwGetProcAddress(name));
 }
 

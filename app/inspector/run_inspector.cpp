@@ -6,6 +6,7 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
@@ -16,6 +17,10 @@
 #include "request/hosts.h"
 #include "run/plan.h"
 #include "run/recordings.h"
+
+#if defined(__EMSCRIPTEN__)
+#include <emscripten.h>
+#endif
 
 namespace broadmark {
 namespace {
@@ -122,55 +127,84 @@ void setWindowSize(Preferences& preferences, const Window& window) {
       static_cast<int>(static_cast<float>(window.height()) / window.scale());
 }
 
-/// Opens a window and returns when it is closed. Throws RenderError if no window can be opened.
-void inspectInWindow(Plan plan, const fs::path& script_file) {
-  Preferences preferences = loadPreferences(preferencesPath());
-  PreferencesFile stored(preferencesPath(), preferences);
-  Window window("Broadmark", preferences.window_width, preferences.window_height);
-  const Gl gl{[](const char* name) { return Window::function(name); }};
-  std::unique_ptr<Script> script = scriptOf(script_file);
-  {
-    Inspector inspector(gl, plan.algorithms, preferences, window.scale(),
-                        executorFactory(plan.request.hosts), hostOf(plan.request),
-                        autosaveFolder());
-    linkClipboard(window);
-    openPlan(inspector.session(), std::move(plan));
-    Movie movie;
-    auto last_draw = std::chrono::steady_clock::now();
-    const auto bind = [&gl] { gl.BindFramebuffer(GL_FRAMEBUFFER, 0); };
-    while (!inspector.closing()) {
-      const auto now = std::chrono::steady_clock::now();
-      const double seconds = std::chrono::duration<double>(now - last_draw).count();
-      const bool needs_redraw = inspector.needsRedraw() || script || !window.input().empty();
-      const double idle_seconds =
-          std::max(inspector.animationSeconds().value_or(kIdleSeconds), kPictureSeconds);
-      window.poll(std::max((needs_redraw ? kPictureSeconds : idle_seconds) - seconds, 1e-4));
-      for (const fs::path& file : window.consumeDrops()) inspector.session().open(file);
-      if (window.closing()) {
-        window.cancelClosing();  // until the user has decided about unsaved changes
-        inspector.close();
-      }
-      if (script) {
-        script->player.update(inspector, window.input());
-        if (script->player.done()) script.reset();
-      }
-      if (window.width() < 1 || window.height() < 1) continue;  // minimised
-      last_draw = std::chrono::steady_clock::now();
-      const double elapsed = std::chrono::duration<double>(last_draw - now).count() + seconds;
-      inspector.draw(window.input(), window.width(), window.height(), elapsed, bind);
-      writePictures(inspector, movie,
-                    [&] { return readPicture(gl, window.width(), window.height()); });
-      preferences = inspector.preferences();
-      setWindowSize(preferences, window);
-      if (!script) report([&] { stored.update(preferences, elapsed); });
-      window.setCursor(ImGui::GetMouseCursor());
-      window.swap();
-    }
-    preferences = inspector.preferences();
+/// The inspector in a window. Throws RenderError if none can be opened.
+class InspectorWindow {
+ public:
+  InspectorWindow(Plan plan, const fs::path& script_file)
+      : preferences_(loadPreferences(preferencesPath())),
+        stored_(preferencesPath(), preferences_),
+        window_("Broadmark", preferences_.window_width, preferences_.window_height),
+        script_(scriptOf(script_file)) {
+    inspector_.emplace(gl_, plan.algorithms, preferences_, window_.scale(),
+                       executorFactory(plan.request.hosts), hostOf(plan.request), autosaveFolder());
+    linkClipboard(window_);
+    openPlan(inspector_->session(), std::move(plan));
   }
-  script.reset();  // ends the sandbox: the preferences are outside of it
-  setWindowSize(preferences, window);
-  report([&] { stored.save(preferences); });
+  InspectorWindow(const InspectorWindow&) = delete;
+  InspectorWindow& operator=(const InspectorWindow&) = delete;
+
+  ~InspectorWindow() {
+    preferences_ = inspector_->preferences();
+    inspector_.reset();
+    script_.reset();  // ends the sandbox: the preferences are outside of it
+    setWindowSize(preferences_, window_);
+    report([&] { stored_.save(preferences_); });
+  }
+
+  [[nodiscard]] bool closing() const { return inspector_->closing(); }
+
+  /// Waits for input for a while, and draws a picture.
+  void step() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_draw_).count();
+    const bool needs_redraw = inspector_->needsRedraw() || script_ || !window_.input().empty();
+    const double idle_seconds =
+        std::max(inspector_->animationSeconds().value_or(kIdleSeconds), kPictureSeconds);
+    window_.poll(std::max((needs_redraw ? kPictureSeconds : idle_seconds) - seconds, 1e-4));
+    for (const fs::path& file : window_.consumeDrops()) inspector_->session().open(file);
+    if (window_.closing()) {
+      window_.cancelClosing();  // until the user has decided about unsaved changes
+      inspector_->close();
+    }
+    if (script_) {
+      script_->player.update(*inspector_, window_.input());
+      if (script_->player.done()) script_.reset();
+    }
+    if (window_.width() < 1 || window_.height() < 1) return;  // minimised
+    last_draw_ = std::chrono::steady_clock::now();
+    const double elapsed = std::chrono::duration<double>(last_draw_ - now).count() + seconds;
+    inspector_->draw(window_.input(), window_.width(), window_.height(), elapsed,
+                     [this] { gl_.BindFramebuffer(GL_FRAMEBUFFER, 0); });
+    writePictures(*inspector_, movie_,
+                  [&] { return readPicture(gl_, window_.width(), window_.height()); });
+    preferences_ = inspector_->preferences();
+    setWindowSize(preferences_, window_);
+    if (!script_) report([&] { stored_.update(preferences_, elapsed); });
+    window_.setCursor(ImGui::GetMouseCursor());
+    window_.swap();
+  }
+
+ private:
+  Preferences preferences_;
+  PreferencesFile stored_;
+  Window window_;
+  Gl gl_{[](const char* name) { return Window::function(name); }};
+  std::unique_ptr<Script> script_;
+  std::optional<Inspector> inspector_;
+  Movie movie_;
+  std::chrono::steady_clock::time_point last_draw_ = std::chrono::steady_clock::now();
+};
+
+/// Opens a window and returns when it is closed; in a browser at once, which then calls for each
+/// picture.
+void inspectInWindow(Plan plan, const fs::path& script_file) {
+  auto opened = std::make_unique<InspectorWindow>(std::move(plan), script_file);
+#if defined(__EMSCRIPTEN__)
+  const auto step = [](void* window) { static_cast<InspectorWindow*>(window)->step(); };
+  emscripten_set_main_loop_arg(step, opened.release(), /*fps=*/0, /*simulate_infinite_loop=*/false);
+#else
+  while (!opened->closing()) opened->step();
+#endif
 }
 
 /// Draws off-screen until the script is done and the session is idle. Preferences are neither read

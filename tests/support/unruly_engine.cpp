@@ -52,7 +52,7 @@ class UnrulyEngine final : public PhysicsEngine {
     if (deed_.value == "crash") {
       const rlimit none{0, 0};
       ::setrlimit(RLIMIT_CORE, &none);  // no core dump
-      std::signal(SIGSEGV, SIG_DFL);  // sanitizers install a handler
+      std::signal(SIGSEGV, SIG_DFL);    // sanitizers install a handler
       std::raise(SIGSEGV);
     }
     if (deed_.value == "abort") std::abort();

@@ -37,4 +37,9 @@ int posix_spawnp(pid_t* /*process*/, const char* /*file*/,
                  char* const* /*arguments*/, char* const* /*environment*/) {
   return ENOSYS;
 }
+
+int glfwGetError(const char** description) {
+  *description = "the browser has no WebGL 2";
+  return 1;
+}
 }

@@ -1,0 +1,34 @@
+// What the program finds when it starts: in a browser the page's canvas and the arguments after '#';
+// in node the current folder.
+if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
+  Module.preRun = () => {
+    FS.mkdir("/here");
+    FS.mount(NODEFS, { root: "." }, "/here");
+    FS.chdir("/here");
+  };
+} else if (ENVIRONMENT_IS_WEB) {
+  Module.canvas = document.getElementById("canvas");
+  Module.arguments = decodeURIComponent(location.hash.slice(1)).split(" ").filter(Boolean);
+  Module.preRun = () => {
+    ENV.DISPLAY = "canvas";
+    FS.chdir("/home/web_user");
+    // What is written here is saved by the browser. Files are complete once they have their name.
+    const rename = FS.rename;
+    FS.rename = (from, to) => {
+      rename(from, to);
+      if (/^\/home\/web_user\/[^.][^/]*$/.test(FS.lookupPath(to).path)) save(to);
+    };
+  };
+  const save = (path) => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([FS.readFile(path)]));
+    link.download = path.split("/").pop();
+    link.click();
+    URL.revokeObjectURL(link.href);
+  };
+  Module.postRun = () => {
+    const fit = () => Browser.setCanvasSize(innerWidth, innerHeight);
+    addEventListener("resize", fit);
+    fit();
+  };
+}
