@@ -44,8 +44,7 @@ bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, i
                          {widthOfWholeColumns(name, always), height})) {
     return false;
   }
-  const auto marks = static_cast<int>(
-      std::ranges::count_if(columns, isMark));
+  const auto marks = static_cast<int>(std::ranges::count_if(columns, isMark));
   ImGui::TableSetupScrollFreeze(marks + 1, 1);
   for (const std::string& column : columns) {
     ImGui::TableSetupColumn(column.c_str(), isMark(column) ? ImGuiTableColumnFlags_NoSort : 0);

@@ -1,5 +1,5 @@
-// A table of the functions in use, of OpenGL 3.3 and of WebGL 2. The library that created the context (EGL, OSMesa,
-// GLFW) fills it, because no loader library works with all three.
+// A table of the functions in use, of OpenGL 3.3 and of WebGL 2. The library that created the
+// context (EGL, OSMesa, GLFW) fills it, because no loader library works with all three.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES  // only for the types of the functions

@@ -51,9 +51,9 @@ struct PlotOptions {
   /// The sum of the curves, which are then stacked, without a legend; or null. If several frames
   /// share a pixel, the one with the maximum is drawn, and a click selects it.
   const FrameValues* stack_total = nullptr;
-  double least_top = 0;       ///< the scale of a stack reaches at least this value
-  std::string title;          ///< in the upper left corner
-  bool frame_numbers = true;  ///< below the axes
+  double least_top = 0;                      ///< the scale of a stack reaches at least this value
+  std::string title;                         ///< in the upper left corner
+  bool frame_numbers = true;                 ///< below the axes
   std::vector<PlotShape>* shapes = nullptr;  ///< see PlotCanvas
 };
 
