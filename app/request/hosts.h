@@ -8,8 +8,15 @@
 
 namespace broadmark {
 
+/// Whether this system can start processes: browsers cannot.
+#if defined(__EMSCRIPTEN__)
+inline constexpr bool kHasProcesses = false;
+#else
+inline constexpr bool kHasProcesses = true;
+#endif
+
 struct HostOptions {
-  bool in_process = false;
+  bool in_process = !kHasProcesses;
   std::filesystem::path program;  ///< build of this program that workers execute; "": this one
   double hard_limit_seconds = 60;
   bool valgrind = false;                   ///< workers run under valgrind: see prepareCount()

@@ -11,6 +11,9 @@ if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
   Module.arguments = decodeURIComponent(location.hash.slice(1)).split(" ").filter(Boolean);
   Module.preRun = () => {
     ENV.DISPLAY = "canvas";
+    FS.symlink("/bin/broadmark", "/proc/self/exe");
+    FS.mkdirTree("/bin/plugins");
+    FS.writeFile("/bin/plugins/find-the-bug.so", "");
     FS.chdir("/home/web_user");
     // What is written here is saved by the browser. Files are complete once they have their name.
     const rename = FS.rename;
