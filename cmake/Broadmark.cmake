@@ -13,7 +13,8 @@ function(broadmark_configure target)
     -ffp-contract=off -fno-semantic-interposition -falign-functions=64
     $<$<BOOL:${BROADMARK_WERROR}>:-Werror>)
   if(EMSCRIPTEN)
-    target_compile_options(${target} PRIVATE -Wno-unused-command-line-argument
+    # Sizes of four bytes hold what fits into memory; counts in files are checked against their length.
+    target_compile_options(${target} PRIVATE -Wno-unused-command-line-argument -Wno-shorten-64-to-32
       -DXXH_VECTOR=0 -include ${PROJECT_SOURCE_DIR}/app/web/compat/missing.h)
     target_include_directories(${target} SYSTEM PRIVATE ${PROJECT_SOURCE_DIR}/app/web/compat)
   endif()
