@@ -96,6 +96,10 @@ void Window::installCallbacks() {
     if (entered == 0) windowOf(window).input().push({.kind = InputEvent::Kind::leave});
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+    double x = 0;  // a finger has not moved there
+    double y = 0;
+    glfwGetCursorPos(window, &x, &y);
+    windowOf(window).pushMove(x, y);
     windowOf(window).input().push(
         {.kind = InputEvent::Kind::button, .code = button, .down = action == GLFW_PRESS});
   });

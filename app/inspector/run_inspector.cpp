@@ -152,6 +152,7 @@ class InspectorWindow {
   }
 
   [[nodiscard]] bool closing() const { return inspector_->closing(); }
+  [[nodiscard]] Inspector& inspector() { return *inspector_; }
 
   /// Waits for input for a while, and draws a picture.
   void step() {
@@ -195,13 +196,17 @@ class InspectorWindow {
   std::chrono::steady_clock::time_point last_draw_ = std::chrono::steady_clock::now();
 };
 
+#if defined(__EMSCRIPTEN__)
+InspectorWindow* the_window = nullptr;  ///< until the page is left
+#endif
+
 /// Opens a window and returns when it is closed; in a browser at once, which then calls for each
 /// picture.
 void inspectInWindow(Plan plan, const fs::path& script_file) {
   auto opened = std::make_unique<InspectorWindow>(std::move(plan), script_file);
 #if defined(__EMSCRIPTEN__)
-  const auto step = [](void* window) { static_cast<InspectorWindow*>(window)->step(); };
-  emscripten_set_main_loop_arg(step, opened.release(), /*fps=*/0, /*simulate_infinite_loop=*/false);
+  the_window = opened.release();
+  emscripten_set_main_loop([] { the_window->step(); }, /*fps=*/0, /*simulate_infinite_loop=*/false);
 #else
   while (!opened->closing()) opened->step();
 #endif
@@ -248,6 +253,30 @@ void inspectOffscreen(Plan plan, const fs::path& script_file) {
 }
 
 }  // namespace
+
+#if defined(__EMSCRIPTEN__)
+// For the page, and for its tests.
+extern "C" {
+
+/// Inspector::value(); "": unknown. Valid until the next call, as all texts here.
+EMSCRIPTEN_KEEPALIVE const char* broadmarkValue(const char* name) {
+  static std::string text;
+  text = the_window == nullptr ? "" : the_window->inspector().value(name).value_or("");
+  return text.c_str();
+}
+
+/// The middle of a widget, "x y" in pixels; "": it is not in view.
+EMSCRIPTEN_KEEPALIVE const char* broadmarkPlace(const char* name) {
+  static std::string text;
+  const WidgetPlace* const place =
+      the_window == nullptr ? nullptr : the_window->inspector().ui().find(name);
+  text = place == nullptr ? ""
+                          : fmt::format("{} {}", (place->min.x + place->max.x) / 2,
+                                        (place->min.y + place->max.y) / 2);
+  return text.c_str();
+}
+}
+#endif
 
 int runInspector(Plan plan, bool in_window, const fs::path& script) {
   try {

@@ -1,5 +1,5 @@
-// What the program finds when it starts: in a browser the page's canvas and the arguments after '#';
-// in node the current folder.
+// What the program finds when it starts: in a browser the page's canvas, and the arguments of the
+// address: page.html#ARGUMENT&ARGUMENT…; in node the current folder.
 if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
   Module.preRun = () => {
     FS.mkdir("/here");
@@ -8,7 +8,7 @@ if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
   };
 } else if (ENVIRONMENT_IS_WEB) {
   Module.canvas = document.getElementById("canvas");
-  Module.arguments = decodeURIComponent(location.hash.slice(1)).split(" ").filter(Boolean);
+  Module.arguments = location.hash.slice(1).split("&").filter(Boolean).map(decodeURIComponent);
   Module.preRun = () => {
     ENV.DISPLAY = "canvas";
     FS.symlink("/bin/broadmark", "/proc/self/exe");
