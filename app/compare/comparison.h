@@ -75,7 +75,7 @@ struct NamedResults {
   std::string name;
   Results results;
 };
-/// Reads a results file, whose path is the name. Throws InputError.
+/// The results of a file, named by its path. Throws InputError.
 NamedResults readResults(const std::filesystem::path&);
 
 /// Compares the cases of results that outlive the comparison, if they have the same name and the

@@ -6,13 +6,27 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <iterator>
 #include <utility>
 
 #include "inspector/authoring/author_dialogs.h"
 #include "inspector/inspector.h"
+#include "inspector/session/share_page.h"
 
 namespace broadmark {
+
+namespace {
+
+/// The address of the program in a browser; null: unknown.
+const char* pageInBrowsers() { return std::getenv("BROADMARK_PAGE"); }
+
+}  // namespace
+
+void Inspector::copyLink() {
+  ImGui::SetClipboardText(openingLink(session_, pageInBrowsers()).c_str());
+  session_.notices.setStatus("copied: the link");
+}
 
 void Inspector::makeCommands() {
   commands_.clear();
@@ -127,6 +141,16 @@ std::vector<UserCommand> Inspector::fileCommands() {
        .label = "Share…",
        .action = [this] { askShare(); },
        .enabled = snapshot},
+      {.doc = "copy a link that opens this simulation in a browser",
+       .menu = "File",
+       .label = "Copy link",
+       .action = [this] { copyLink(); },
+       .enabled =
+           [this] {
+             const auto source = session_.playback.source();
+             return pageInBrowsers() != nullptr && source &&
+                    source->origin == FrameOrigin::simulation;
+           }},
       {.doc = "record a movie: a picture of every shown frame",
        .menu = "File",
        .label = "Record movie…",

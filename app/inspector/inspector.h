@@ -123,6 +123,7 @@ class Inspector {
   void askSaveRecording();
   void askExportTimings(const std::string& table);
   void takeScreenshot();
+  void copyLink();
   void askShare();
   /// `plot`: its name, see Ui.
   void askSavePlot(const std::string& plot);

@@ -11,6 +11,7 @@ if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
   Module.arguments = location.hash.slice(1).split("&").filter(Boolean).map(decodeURIComponent);
   Module.preRun = () => {
     ENV.DISPLAY = "canvas";
+    ENV.BROADMARK_PAGE = location.origin + location.pathname;
     FS.symlink("/bin/broadmark", "/proc/self/exe");
     FS.mkdirTree("/bin/plugins");
     FS.writeFile("/bin/plugins/find-the-bug.so", "");

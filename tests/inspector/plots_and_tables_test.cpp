@@ -1,7 +1,9 @@
-// What the panels give away: plots as SVG and PNG, tables; and two results files compared.
+// What the inspector gives away: plots as SVG and PNG, tables, links; and two results files
+// compared.
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <regex>
 #include <set>
 
@@ -123,6 +125,21 @@ TEST_F(PlotsAndTablesTest, APlotBecomesAPng) {
   savePlot("Timeline/plot", "plot.pdf");
   EXPECT_THAT(value("error"), HasSubstr("plot.pdf: a plot is saved as .svg or .png"));
   EXPECT_FALSE(std::filesystem::exists("plot.pdf"));
+}
+
+TEST_F(PlotsAndTablesTest, ALinkHoldsTheSession) {
+  setParameters(inspector.session().draft.scene(), {{"seed", "9"}});
+  run({"sap"});
+  const auto command = std::ranges::find(inspector.commands(), "Copy link", &UserCommand::label);
+  ::unsetenv("BROADMARK_PAGE");
+  EXPECT_FALSE(command->isEnabled());
+  ::setenv("BROADMARK_PAGE", "https://example.org/page.html", 1);
+  ASSERT_TRUE(command->isEnabled());
+  command->action();
+  ::unsetenv("BROADMARK_PAGE");
+  EXPECT_EQ(copied,
+            "https://example.org/page.html#freefall&--engine=bullet&--param=frames=20"
+            "&--param=objects=40&--param=seed=9&--algorithm=sap&--frame=20");
 }
 
 TEST_F(PlotsAndTablesTest, CasesAreCopiedBeyondTheVisibleRows) {

@@ -128,6 +128,27 @@ def test_the_address_holds_a_session(page):
     assert page.complaints() == []
 
 
+def test_a_link_opens_the_same_session(page):
+    page.open(
+        ["gravity", "--objects", "200", "--param", "seed=7", "--algorithm", "kd", "--frame", "5"]
+    )
+    page.until("shown_frame", lambda frame: frame == "5")
+    pairs = page.until("pairs", lambda pairs: pairs != "")
+    page.driver.execute_script(
+        "navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve() }"
+    )
+    page.press("File")
+    page.press("File/Copy link")
+    link = WebDriverWait(page.driver, PATIENCE, 0.2).until(
+        lambda driver: driver.execute_script("return window.copied")
+    )
+    page.open(link.split("#")[1].split("&"))
+    page.until("shown_frame", lambda frame: frame == "5")
+    assert page.until("pairs", lambda found: found != "") == pairs
+    assert page.value("bodies") == "200"
+    assert page.complaints() == []
+
+
 def test_a_dropped_recording_opens(page):
     page.open(["freefall", "--objects", "50", "--frames", "9", "--frame", "9"])
     page.until("shown_frame", lambda frame: frame == "9")

@@ -33,48 +33,74 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// The options of a scene's parameters that differ from the defaults.
-std::string sceneOptions(ParameterValues values) {
+/// The arguments for a scene with its parameters that differ from the defaults.
+std::vector<std::string> sceneArguments(ParameterValues values) {
   const std::string scene = values.extract("scene").mapped();
   const auto fresh = makeSimulation(scene, values["engine"]);
-  std::string options = shellQuoted(scene);
-  options += fmt::format(" --engine {}", shellQuoted(values["engine"]));
+  std::vector<std::string> arguments = {scene, "--engine=" + values["engine"]};
   for (const auto& [key, value] : changedValues(std::move(values), *fresh)) {
-    options += fmt::format(" --param {}", shellQuoted(fmt::format("{}={}", key, value)));
+    arguments.push_back(fmt::format("--param={}={}", key, value));
   }
-  return options;
+  return arguments;
+}
+
+std::string percentEncoded(std::string_view text) {
+  constexpr std::string_view kUnreserved =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.~=,:/";
+  std::string encoded;
+  for (const char c : text) {
+    const bool is_plain = kUnreserved.find(c) != kUnreserved.npos;
+    encoded += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return encoded;
 }
 
 }  // namespace
 
-std::string openingCommand(const Session& session) {
+std::vector<std::string> openingArguments(const Session& session) {
   const auto source = session.playback.source();
-  if (!source) return "";
-  std::string command = "broadmark ";
+  if (!source) return {};
+  std::vector<std::string> arguments;
   if (!source->recording.empty()) {
-    command += shellQuoted(source->recording.string());
+    arguments = {source->recording.string()};
   } else if (source->origin == FrameOrigin::simulation) {
-    command += sceneOptions(sceneParametersOf(source.get()));
+    arguments = sceneArguments(sceneParametersOf(source.get()));
   } else {
-    return "";
+    return {};
   }
   for (const auto& [key, value] : session.playback.reading) {
-    command += value == "on" ? fmt::format(" {}", parameterOption(key))
-                             : fmt::format(" {}={}", parameterOption(key), shellQuoted(value));
+    arguments.push_back(parameterOption(key) + (value == "on" ? "" : "=" + value));
   }
   std::vector<std::string> ids;
   std::set<std::string> options;
   for (const TrackEdit& track : session.tracks.list) {
     const Algorithm& algorithm = track.test_case.algorithm;
     ids.push_back(algorithm.id);
-    if (!algorithm.plugin.empty()) options.insert("--plugin " + shellQuoted(algorithm.plugin));
+    if (!algorithm.plugin.empty()) options.insert("--plugin=" + algorithm.plugin);
     for (const auto& [key, value] : track.test_case.parameters) {
-      options.insert("--param " + shellQuoted(fmt::format("{}:{}={}", algorithm.id, key, value)));
+      options.insert(fmt::format("--param={}:{}={}", algorithm.id, key, value));
     }
   }
-  if (!ids.empty()) command += fmt::format(" --algorithm {}", fmt::join(ids, ","));
-  for (const std::string& option : options) command += ' ' + option;
-  return command + fmt::format(" --frame {}", session.playback.frame());
+  if (!ids.empty()) arguments.push_back(fmt::format("--algorithm={}", fmt::join(ids, ",")));
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  arguments.push_back(fmt::format("--frame={}", session.playback.frame()));
+  return arguments;
+}
+
+std::string openingCommand(const Session& session) {
+  std::string command;
+  for (const std::string& argument : openingArguments(session)) {
+    command += (command.empty() ? "broadmark " : " ") + shellQuoted(argument);
+  }
+  return command;
+}
+
+std::string openingLink(const Session& session, std::string_view page) {
+  std::string link(page);
+  for (const std::string& argument : openingArguments(session)) {
+    link += (link.size() == page.size() ? '#' : '&') + percentEncoded(argument);
+  }
+  return link;
 }
 
 std::string sharePage(const Session& session, const AnswerText& answer, std::string_view png) {
