@@ -98,7 +98,7 @@ TEST(SimulationProcess, ItsFramesBecomeScenes) {
 
 TEST(SimulationProcess, ACrashOrAnExceptionIsAnError) {
   for (const auto& [deed, error] : std::initializer_list<std::pair<std::string, std::string>>{
-           {"crash", "frame 2: engine 'unruly' crashed with SIGSEGV"},
+           {"die", "frame 2: engine 'unruly' crashed with SIGSEGV"},
            {"abort", "frame 2: engine 'unruly' crashed with SIGABRT"},
            {"throw", "thrown on purpose"}}) {
     const auto there = processes()(unruly(deed), {});

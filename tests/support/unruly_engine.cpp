@@ -49,10 +49,10 @@ class UnrulyEngine final : public PhysicsEngine {
     if (++steps_ != 2) return;
     if (deed_.value == "throw") throw std::runtime_error("thrown on purpose");
     if (deed_.value == "throw-number") throw 42;
-    if (deed_.value == "crash") {
+    if (deed_.value == "crash" || deed_.value == "die") {
       const rlimit none{0, 0};
-      ::setrlimit(RLIMIT_CORE, &none);  // no core dump
-      std::signal(SIGSEGV, SIG_DFL);    // sanitizers install a handler
+      ::setrlimit(RLIMIT_CORE, &none);                          // no core dump
+      if (deed_.value == "die") std::signal(SIGSEGV, SIG_DFL);  // past all handlers
       std::raise(SIGSEGV);
     }
     if (deed_.value == "abort") std::abort();
@@ -64,7 +64,7 @@ class UnrulyEngine final : public PhysicsEngine {
   [[nodiscard]] bool allAsleep() const override { return false; }
 
  private:
-  Choice deed_{"none", {"none", "throw", "throw-number", "crash", "abort", "hang"}};
+  Choice deed_{"none", {"none", "throw", "throw-number", "crash", "die", "abort", "hang"}};
   int steps_ = 0;
   Vec3 gravity_{};
   BodyPool<StillBody> bodies_;
