@@ -96,10 +96,12 @@ void Window::installCallbacks() {
     if (entered == 0) windowOf(window).input().push({.kind = InputEvent::Kind::leave});
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
-    double x = 0;  // a finger has not moved there
+#if defined(__EMSCRIPTEN__)  // a finger has not moved there
+    double x = 0;
     double y = 0;
     glfwGetCursorPos(window, &x, &y);
     windowOf(window).pushMove(x, y);
+#endif
     windowOf(window).input().push(
         {.kind = InputEvent::Kind::button, .code = button, .down = action == GLFW_PRESS});
   });
