@@ -8,10 +8,10 @@ namespace broadmark {
 namespace {
 
 #if defined(__EMSCRIPTEN__)
-constexpr char kShaderHeader[] =
+constexpr std::string_view kShaderHeader =
     "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n";
 #else
-constexpr char kShaderHeader[] = "#version 330 core\n";
+constexpr std::string_view kShaderHeader = "#version 330 core\n";
 #endif
 
 template <class GetParameter, class GetLog>
@@ -31,10 +31,9 @@ void checkBuilt(GLuint id, GLenum status, GetParameter parameter, GetLog get_log
 
 GlObject makeShader(const Gl& gl, GLenum type, std::string_view source) {
   GlObject shader(gl.CreateShader(type), gl.DeleteShader);
-  const std::string header =
-      fmt::format("{}#define PRIMITIVES_PER_ROW {}\n", kShaderHeader, kPrimitivesPerRow);
-  const std::array texts = {header.data(), source.data()};
-  const std::array lengths = {static_cast<GLint>(header.size()), static_cast<GLint>(source.size())};
+  const std::array texts = {kShaderHeader.data(), source.data()};
+  const std::array lengths = {static_cast<GLint>(kShaderHeader.size()),
+                              static_cast<GLint>(source.size())};
   gl.ShaderSource(shader.get(), static_cast<GLsizei>(texts.size()), texts.data(), lengths.data());
   gl.CompileShader(shader.get());
   checkBuilt(

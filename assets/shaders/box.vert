@@ -1,4 +1,4 @@
-// A box pulled from the texture of primitives, PRIMITIVES_PER_ROW in a row: 18 vertices, the three faces that look at the eye.
+// A box pulled from the texture of primitives, two texels each: 18 vertices, the three faces that look at the eye.
 uniform sampler2D primitives;
 uniform mat4 view_projection;
 uniform vec3 eye;
@@ -18,7 +18,8 @@ const vec2 kCorners[6] =
 void main() {
   int primitive = gl_VertexID / 18;
   int axis = (gl_VertexID % 18) / 6;
-  ivec2 texel = ivec2(2 * (primitive % PRIMITIVES_PER_ROW), primitive / PRIMITIVES_PER_ROW);
+  int per_row = textureSize(primitives, 0).x / 2;
+  ivec2 texel = ivec2(2 * (primitive % per_row), primitive / per_row);
   vec4 from = texelFetch(primitives, texel, 0);
   vec4 to = texelFetch(primitives, texel + ivec2(1, 0), 0);
 

@@ -16,7 +16,8 @@ const vec2 kCorners[6] =
 
 void main() {
   int primitive = gl_VertexID / 6;
-  ivec2 texel = ivec2(2 * (primitive % PRIMITIVES_PER_ROW), primitive / PRIMITIVES_PER_ROW);
+  int per_row = textureSize(primitives, 0).x / 2;
+  ivec2 texel = ivec2(2 * (primitive % per_row), primitive / per_row);
   vec4 from = texelFetch(primitives, texel, 0);
   vec4 to = texelFetch(primitives, texel + ivec2(1, 0), 0);
   int rgb = int(from.w);

@@ -34,9 +34,6 @@ namespace broadmark {
 /// Address of a GL function, or null.
 using GlLoader = std::function<void*(const char* name)>;
 
-/// In the texture that holds them; shaders know it as PRIMITIVES_PER_ROW.
-inline constexpr int kPrimitivesPerRow = 1024;
-
 /// The function table of a context.
 struct Gl {
   /// Throws RenderError if a function is missing.
