@@ -11,6 +11,7 @@ import threading
 
 import pytest
 from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.actions.pointer_input import PointerInput
 from selenium.webdriver.support.wait import WebDriverWait
@@ -35,7 +36,7 @@ class Page:
         if touch:
             metrics = {"width": width, "height": height, "pixelRatio": 2.0}
             options.add_experimental_option("mobileEmulation", {"deviceMetrics": metrics})
-        self.driver = webdriver.Chrome(options=options)
+        self.driver = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
         if not touch:
             self.driver.set_window_size(width, height)
         self.touch = touch
