@@ -109,7 +109,7 @@ struct CellBlock {
     std::memcpy(static_cast<void*>(query.buckets), &buckets, sizeof(buckets));
   } else {  // addresses of four bytes
     for (int i = 0; i < 8; ++i) {
-      query.buckets[i] =
+      query.buckets[i] =  // NOLINTNEXTLINE(performance-no-int-to-ptr): the vector holds addresses
           reinterpret_cast<const CellBucket*>(static_cast<std::uintptr_t>(buckets[i]));
     }
   }

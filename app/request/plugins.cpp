@@ -264,7 +264,7 @@ std::vector<SdkPlugin> sdkPlugins() {
 bool isLibrary(const std::string& plugin) { return otherSource(plugin) == nullptr; }
 
 std::string pluginOf(const std::filesystem::path& file) {
-  const std::string path = fs::absolute(file).string();
+  std::string path = fs::absolute(file).string();
   if (file.extension() == ".so") return path;
   return ::access(path.c_str(), X_OK) == 0 ? kExternalPrefix + shellQuoted(path)
                                            : kPairLogPrefix + path;
