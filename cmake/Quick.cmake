@@ -11,7 +11,8 @@ set(broadmark_heavy_headers <algorithm> <array> <chrono> <cmath> <cstdint> <dequ
 
 # Rebuilding the same sources, here or in another clone, then takes a minute.
 find_program(BROADMARK_CCACHE ccache DOC "Caches what is compiled; empty: not used")
-if(BROADMARK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+# Not for browsers: ccache does not see what #embed reads (see Embed.cmake).
+if(BROADMARK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT EMSCRIPTEN)
   # Sloppiness that ccache needs for precompiled headers (see its manual), and a base directory to find
   # the same file in another folder.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}
