@@ -175,7 +175,8 @@ Excerpt excerptOf(std::uint32_t frames, std::uint32_t wanted) {
   for (std::uint32_t i = 0; i < stretches; ++i) {
     // In the middle of its share of the recording. The first one begins with the initial pose.
     const auto share = [&](std::uint32_t part) {
-      return static_cast<std::uint32_t>(std::uint64_t{frames} * part / (std::uint64_t{2} * stretches));
+      return static_cast<std::uint32_t>(std::uint64_t{frames} * part /
+                                        (std::uint64_t{2} * stretches));
     };
     const std::uint32_t begin =
         std::min(share(2 * i + 1) - std::min(share(2 * i + 1), length / 2), frames - length);
