@@ -104,7 +104,8 @@ struct DisplayOptions {
   }
   /// Selects the colour mode with this index. Classes hidden in another one are shown.
   void colourBy(std::size_t mode) {
-    if (std::exchange(colouring, mode % colourModes().size()) != colouring) {
+    const std::size_t chosen = mode % colourModes().size();
+    if (std::exchange(colouring, chosen) != chosen) {
       filter.hidden_classes = 0;
     }
   }

@@ -67,8 +67,8 @@ void Ui::endTable() {
 
 void Ui::copyCell(std::string_view text) {
   if (!copies_tables_ || !in_table_) return;
-  const bool is_first = std::exchange(copied_row_, ImGui::TableGetRowIndex()) != copied_row_;
-  copied_ += is_first ? '\n' : '\t';
+  const int row = ImGui::TableGetRowIndex();
+  copied_ += std::exchange(copied_row_, row) == row ? '\t' : '\n';
   copied_ += text.substr(0, text.find("##"));
 }
 
