@@ -15,7 +15,7 @@
 
 extern "C" {
 
-// The one library that is there: the algorithm of the example "Find the bug".
+// The only library is the algorithm of the example "Find the bug".
 void* dlopen(const char* path, int /*mode*/) {
   static char library = 0;
   return std::string_view(path).ends_with("/find-the-bug.so") ? &library : nullptr;

@@ -29,8 +29,10 @@ template <class T>
 class atomic_ref {
  public:
   explicit atomic_ref(T& value) : value_(&value) {}
-  T load(memory_order) const { return __atomic_load_n(value_, __ATOMIC_RELAXED); }
-  void store(T value, memory_order) const { __atomic_store_n(value_, value, __ATOMIC_RELAXED); }
+  T load(memory_order order) const { return __atomic_load_n(value_, static_cast<int>(order)); }
+  void store(T value, memory_order order) const {
+    __atomic_store_n(value_, value, static_cast<int>(order));
+  }
 
  private:
   T* value_;
