@@ -7,7 +7,7 @@
 
 namespace broadmark {
 
-int runInspector(Plan /*plan*/, bool in_window, const std::filesystem::path& /*script*/) {
+int runInspector(Plan /*plan*/, bool in_window, const InspectorOptions& /*options*/) {
   throw InputError(in_window ? leftOut(parts::kInspector) + ": add --headless"
                              : "--ui: " + leftOut(parts::kInspector));
 }

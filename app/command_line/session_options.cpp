@@ -197,13 +197,32 @@ void SessionParser::addPictures() {
   for (const CLI::Option* option : addPictureOptions(app_, options_.picture)) {
     tag(option, kWindow | kNoPicture);
   }
+  InspectorOptions& inspector = options_.inspector_options;
+  const auto set_camera = [&inspector](const std::string& text) {
+    inspector.camera = parseCamera(text);
+  };
+  const auto get_camera = [&inspector] {
+    return inspector.camera ? cameraText(*inspector.camera) : std::string();
+  };
+  CLI::Option* camera =
+      addValue(app_, "--camera", "X,Y,Z,YAW,PITCH,DISTANCE", set_camera, get_camera,
+               "the inspector's first view: the point it looks at and its distance from there, the "
+               "world being 1 in size around 0, and degrees");
+  const auto set_selection = [&inspector](const std::string& text) {
+    inspector.selection = parseBodies(text);
+  };
+  const auto get_selection = [&inspector] {
+    return fmt::format("{}", fmt::join(inspector.selection, ","));
+  };
+  CLI::Option* selection = addValue(app_, "--select", "BODY[,BODY...]", set_selection,
+                                    get_selection, "bodies selected at first in the inspector");
   CLI::Option* ui =
       app_.add_flag("--ui", options_.ui, "with --headless: draw the inspector off-screen");
-  CLI::Option* script = addPath(app_, "--script", "FILE", options_.script,
+  CLI::Option* script = addPath(app_, "--script", "FILE", inspector.script,
                                 "script of user actions in the inspector (see docs/inspector.md)");
   tag(ui, kRequest | kWindow);
-  tag(script, kRequest | kHeadless);
-  hideWithout(parts::kInspector, {ui, script});
+  for (const CLI::Option* option : {camera, selection, script}) tag(option, kRequest | kHeadless);
+  hideWithout(parts::kInspector, {camera, selection, ui, script});
 }
 
 void SessionParser::addCaseOfResults() {
@@ -258,7 +277,8 @@ SessionOptions SessionParser::options() const {
   if (!options.case_id.empty() && options.sources.size() != 1) {
     throw InputError("--case: the source must be one results file");
   }
-  if (parts::kInspector.included && options.headless && options.ui && options.script.empty() &&
+  if (parts::kInspector.included && options.headless && options.ui &&
+      options.inspector_options.script.empty() &&
       options.screenshot.empty()) {
     throw InputError("--ui: has no effect without --screenshot or --script");
   }

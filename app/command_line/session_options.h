@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "request/inspector_options.h"
 #include "request/run_request.h"
 
 namespace CLI {
@@ -22,8 +23,8 @@ struct SessionOptions : RunRequest {
   bool list_only = false;
   bool quiet = false;
   bool headless = false;
-  bool ui = false;               ///< run the inspector without a window
-  std::filesystem::path script;  ///< script for the inspector; "": none
+  bool ui = false;  ///< run the inspector without a window
+  InspectorOptions inspector_options;
 
   [[nodiscard]] bool inspector() const { return !headless || ui; }
 };

@@ -287,7 +287,7 @@ int runSession(const SessionOptions& options) {
   requireParts(options);
   if (options.inspector()) {
     requireShowable(plan);
-    return runInspector(std::move(plan), !options.headless, options.script);
+    return runInspector(std::move(plan), !options.headless, options.inspector_options);
   }
   if (!options.export_case.empty()) {
     return runExportCase(std::move(plan), options.export_case, options.quiet);

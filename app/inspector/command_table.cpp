@@ -24,7 +24,7 @@ const char* pageInBrowsers() { return std::getenv("BROADMARK_PAGE"); }
 }  // namespace
 
 void Inspector::copyLink() {
-  ImGui::SetClipboardText(openingLink(session_, pageInBrowsers()).c_str());
+  ImGui::SetClipboardText(openingLink(session_, views_.first().camera(), pageInBrowsers()).c_str());
   session_.notices.setStatus("copied: the link");
 }
 

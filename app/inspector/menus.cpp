@@ -98,8 +98,9 @@ void Inspector::askShare() {
               .suggestion = fs::path(fmt::format("frame {}.html", session_.playback.frame())),
               .chosen = [this](const fs::path& path) {
                 requestPicture(path, [this](const fs::path& file, const Picture& picture) {
-                  const AnswerText& answer = views_.first().answer();
-                  writeTextFile(file, sharePage(session_, answer, encodePng(picture)));
+                  const View& view = views_.first();
+                  writeTextFile(file, sharePage(session_, view.camera(), view.answer(),
+                                                encodePng(picture)));
                 });
               }});
 }

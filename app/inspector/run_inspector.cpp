@@ -104,11 +104,29 @@ SimulationHost hostOf(const RunRequest& request) {
   return request.hosts.in_process ? simulateInProcess : simulateInProcesses();
 }
 
+/// Throws InputError unless the plan's source has what is to be shown.
+void requireShown(const Plan& plan, const InspectorOptions& options) {
+  if (plan.entries.empty()) {
+    if (options.camera) throw InputError("--camera: no recording to open");
+    if (!options.selection.empty()) throw InputError("--select: no recording to open");
+    return;
+  }
+  const SceneInfo& scene = plan.entries.front().source.reference.scene;
+  for (const std::uint32_t body : options.selection) {
+    if (body < scene.objects) continue;
+    throw InputError(fmt::format("--select: there is no body {}: the last body of {} is {}", body,
+                                 scene.name, std::int64_t{scene.objects} - 1));
+  }
+}
+
 /// Opens the plan's source, and adds its algorithms.
-void openPlan(Session& session, Plan plan) {
+void openPlan(Session& session, Plan plan, const InspectorOptions& options) {
+  requireShown(plan, options);
   const std::optional<std::uint32_t> frame = plan.request.frame;
   session.open(std::move(plan));
   if (frame) session.playback.goTo(*frame);
+  session.first_camera = options.camera;
+  session.first_selection = options.selection;
 }
 
 /// Calls `save`, and prints its error.
@@ -130,15 +148,15 @@ void setWindowSize(Preferences& preferences, const Window& window) {
 /// The inspector in a window. Throws RenderError if none can be opened.
 class InspectorWindow {
  public:
-  InspectorWindow(Plan plan, const fs::path& script_file)
+  InspectorWindow(Plan plan, const InspectorOptions& options)
       : preferences_(loadPreferences(preferencesPath())),
         stored_(preferencesPath(), preferences_),
         window_("Broadmark", preferences_.window_width, preferences_.window_height),
-        script_(scriptOf(script_file)) {
+        script_(scriptOf(options.script)) {
     inspector_.emplace(gl_, plan.algorithms, preferences_, window_.scale(),
                        executorFactory(plan.request.hosts), hostOf(plan.request), autosaveFolder());
     linkClipboard(window_);
-    openPlan(inspector_->session(), std::move(plan));
+    openPlan(inspector_->session(), std::move(plan), options);
   }
   InspectorWindow(const InspectorWindow&) = delete;
   InspectorWindow& operator=(const InspectorWindow&) = delete;
@@ -202,8 +220,8 @@ InspectorWindow* the_window = nullptr;  ///< until the page is left
 
 /// Opens a window and returns when it is closed; in a browser at once, which then calls for each
 /// picture.
-void inspectInWindow(Plan plan, const fs::path& script_file) {
-  auto opened = std::make_unique<InspectorWindow>(std::move(plan), script_file);
+void inspectInWindow(Plan plan, const InspectorOptions& options) {
+  auto opened = std::make_unique<InspectorWindow>(std::move(plan), options);
 #if defined(__EMSCRIPTEN__)
   the_window = opened.release();
   emscripten_set_main_loop([] { the_window->step(); }, /*fps=*/0, /*simulate_infinite_loop=*/false);
@@ -214,13 +232,13 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
 
 /// Draws off-screen until the script is done and the session is idle. Preferences are neither read
 /// nor written. Throws RenderError, and InputError if the script fails.
-void inspectOffscreen(Plan plan, const fs::path& script_file) {
+void inspectOffscreen(Plan plan, const InspectorOptions& options) {
   const RunRequest request = plan.request;
   const auto context = makeOffscreenContext(request.picture.gl);
   const Gl gl(*context);
-  std::unique_ptr<Script> script = scriptOf(script_file);
+  std::unique_ptr<Script> script = scriptOf(options.script);
   Inspector inspector(gl, plan.algorithms, {}, 1, executorFactory(request.hosts), hostOf(request));
-  openPlan(inspector.session(), std::move(plan));
+  openPlan(inspector.session(), std::move(plan), options);
   InputQueue input;
   Movie movie;
   int width = request.picture.width;
@@ -278,12 +296,12 @@ EMSCRIPTEN_KEEPALIVE const char* broadmarkPlace(const char* name) {
 }
 #endif
 
-int runInspector(Plan plan, bool in_window, const fs::path& script) {
+int runInspector(Plan plan, bool in_window, const InspectorOptions& options) {
   try {
     if (in_window) {
-      inspectInWindow(std::move(plan), script);
+      inspectInWindow(std::move(plan), options);
     } else {
-      inspectOffscreen(std::move(plan), script);
+      inspectOffscreen(std::move(plan), options);
     }
   } catch (const RenderError& error) {
     throw InputError(in_window ? fmt::format("{} (--headless runs without a window)", error.what())

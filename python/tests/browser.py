@@ -27,10 +27,13 @@ class Page:
     def __init__(self, driver: Any, folder: pathlib.Path) -> None:
         self.driver, self.folder = driver, folder
 
-    def show(self, *paths: pathlib.Path, width: int = 1280, dark: bool = False) -> None:
+    def show(
+        self, *paths: pathlib.Path, width: int = 1280, dark: bool = False, program_page: str = ""
+    ) -> None:
         """Writes the report of the results and opens it; a width below 600 emulates a phone."""
         report = self.folder / "a report.html"
-        write_report(broadmark.read_results(*paths), report, pictures=False)
+        results = broadmark.read_results(*paths)
+        write_report(results, report, pictures=False, program_page=program_page)
         size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         colours = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}

@@ -129,6 +129,17 @@ def test_paths_are_relative_to_the_page(
         assert "--plugin runs/mine.so" in mine and "--plugin pairs:runs/pairs.csv" in logged
 
 
+def test_cases_that_need_files_have_no_address(tmp_path: pathlib.Path) -> None:
+    cases = [case(name, 100, 1e-5) for name in ("sap", "kd", "mine", "gpu")]
+    cases[1]["recording"] = {**cases[1]["recording"], "source": "boxes.aabbs"}
+    cases[2]["plugin"] = "mine.so"
+    cases[3]["device"] = "a GPU"
+    results = broadmark.read_results(write_results(tmp_path / "results.jsonl", cases))
+    assert "address" not in page_data(results)["columns"]
+    addresses = texts(page_data(results, program_page="https://example.org")["columns"]["address"])
+    assert addresses[0].startswith("brownian&--objects&100&") and addresses[1:] == [""] * 3
+
+
 def test_variants_are_labelled_by_differing_traits(tmp_path: pathlib.Path) -> None:
     data = data_of(
         tmp_path,

@@ -273,6 +273,17 @@ def test_arrow_keys_move_in_the_grid(opened: Page, standard: pathlib.Path) -> No
     )
 
 
+def test_a_case_links_to_the_program_in_a_browser(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard, program_page="https://example.org/index.html")
+    opened.section("cases")
+    opened.find("#cases tbody tr:first-child button").send_keys(Keys.ENTER)
+    link = opened.find("#details [data-name=browser]").get_attribute("href")
+    assert link == (
+        "https://example.org/index.html#brownian&--objects&100&--frames&4&--seed&1"
+        "&--param&mass=1&--algorithm&faulty&--frame&3"
+    )
+
+
 def test_details_show_commands_and_hash(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("cases")

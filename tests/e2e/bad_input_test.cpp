@@ -120,6 +120,15 @@ TEST_F(BadInput, NumbersOutOfRange) {
     if (!parts::kRenderer.included) break;
     expectRunRefused({"--frame", frame, "--screenshot", "a.png"}, {"--frame", frame});
   }
+  if (!parts::kInspector.included) return;
+  for (const std::string camera : {"1,2,3", "0,0,0,0,0,x", "0,0,0,0,91,1", "nan,0,0,0,0,1"}) {
+    expectRefusal({"freefall", "--camera", camera}, {"--camera", "'" + camera + "'"});
+  }
+  Arguments call = {"freefall", "--objects", "20", "--frames",     "3",
+                    "--ui",     "--headless", "--screenshot", "no.png"};
+  call.insert(call.end(), {"--select", "3,20"});
+  expectRefusal(call, {"--select", "20", "FreeFall", "19"});
+  expectRefusal({"freefall", "--select", "-1"}, {"--select", "'-1'"});
 }
 
 TEST_F(BadInput, IncompleteCalls) {

@@ -37,14 +37,18 @@ class Share : public EndToEnd {
 TEST_F(Share, ShowsThePictureAndTheCommandThatOpensItAgain) {
   const std::string page =
       pageOf({"brownian", "--objects", "50", "--frames", "5", "--engine", "kinematic",
-              "--algorithm", "kd,bf", "--param", "kd:margin=0.5"});
+              "--algorithm", "kd,bf", "--param", "kd:margin=0.5", "--select", "7,3", "--camera",
+              "0.1,-0.2,0,30,-12.5,1.5"});
   EXPECT_THAT(page, HasSubstr("<h1>Brownian, frame 2</h1>"));
   EXPECT_THAT(page, HasSubstr("kd reports "));
   EXPECT_THAT(page, HasSubstr("base64,iVBORw0KGgo")) << "the first bytes of a PNG";
   expectOpens(page,
               "expect title = Brownian\nexpect frame = 2\nexpect algorithms = 2\n"
               "expect open.objects = 50\nexpect open.engine = kinematic\n"
-              "expect algorithm.kd.margin = 0.5\n");
+              "expect algorithm.kd.margin = 0.5\n"
+              "expect selection = 2\nexpect view.pair ~ 3\nexpect view.pair ~ 7\n"
+              "expect camera.yaw = 0.5236\nexpect camera.pitch = -0.2182\n"
+              "expect camera.distance = 1.5000\n");
 }
 
 TEST_F(Share, NamesARecordingByItsFile) {

@@ -42,6 +42,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   plugins.reloadRebuilt(progress);
   waited_seconds_ = playback.hasReached(progress) ? 0 : waited_seconds_ + seconds;
   if (!playback.update(progress)) return;
+  if (!first_selection.empty()) selection.select(std::exchange(first_selection, {}));
   timeline.update(playback.source(), playback.lastFrame(), playback.frame());
   reportFailure(progress);
   document.advance(progress);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/render/orbit_camera.h"
 #include "inspector/jobs/jobs.h"
 #include "inspector/run/run_thread.h"
 #include "inspector/session/body_selection.h"
@@ -91,6 +92,9 @@ class Session {
   PluginList plugins{tracks, playback, notices};
   Draft draft{playback};
   std::optional<SecondViewRequest> second;  ///< nothing: no second view
+  // For the source that is being opened, reset once it is shown.
+  std::optional<OrbitCamera> first_camera;
+  BodySelection::Bodies first_selection;
   bool cameras_linked = true;               ///< one camera moves both views
   std::optional<OpenedResults> results;     ///< latest opened results
   RunThread runs;

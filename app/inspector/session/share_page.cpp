@@ -10,6 +10,7 @@
 
 #include "broadmark/parameters.h"
 #include "inspector/session/frame_provider_requests.h"
+#include "request/inspector_options.h"
 #include "request/reading_options.h"
 #include "support/words.h"
 
@@ -57,7 +58,7 @@ std::string percentEncoded(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string> openingArguments(const Session& session) {
+std::vector<std::string> openingArguments(const Session& session, const OrbitCamera& camera) {
   const auto source = session.playback.source();
   if (!source) return {};
   std::vector<std::string> arguments;
@@ -84,27 +85,32 @@ std::vector<std::string> openingArguments(const Session& session) {
   if (!ids.empty()) arguments.push_back(fmt::format("--algorithm={}", fmt::join(ids, ",")));
   arguments.insert(arguments.end(), options.begin(), options.end());
   arguments.push_back(fmt::format("--frame={}", session.playback.frame()));
+  const BodySelection::Bodies& selected = session.selection.bodies();
+  if (!selected.empty()) arguments.push_back(fmt::format("--select={}", fmt::join(selected, ",")));
+  arguments.push_back("--camera=" + cameraText(camera));
   return arguments;
 }
 
-std::string openingCommand(const Session& session) {
+std::string openingCommand(const Session& session, const OrbitCamera& camera) {
   std::string command;
-  for (const std::string& argument : openingArguments(session)) {
+  for (const std::string& argument : openingArguments(session, camera)) {
     command += (command.empty() ? "broadmark " : " ") + shellQuoted(argument);
   }
   return command;
 }
 
-std::string openingLink(const Session& session, std::string_view page) {
+std::string openingLink(const Session& session, const OrbitCamera& camera,
+                        std::string_view page) {
   std::string link(page);
-  for (const std::string& argument : openingArguments(session)) {
+  for (const std::string& argument : openingArguments(session, camera)) {
     link += (link.size() == page.size() ? '#' : '&') + percentEncoded(argument);
   }
   return link;
 }
 
-std::string sharePage(const Session& session, const AnswerText& answer, std::string_view png) {
-  const std::string command = openingCommand(session);
+std::string sharePage(const Session& session, const OrbitCamera& camera, const AnswerText& answer,
+                      std::string_view png) {
+  const std::string command = openingCommand(session, camera);
   const std::string title =
       fmt::format("{}, frame {}", session.playback.scene().name, session.playback.frame());
   return fmt::format(

@@ -77,7 +77,7 @@ void View::startRequestedFlight(Session& session) {
   flyTo(focusedOn(camera_, space_.toView(enlarged(bounds, margin)), aspect()));
 }
 
-void View::placeCamera(const Snapshot& snapshot) {
+void View::placeCamera(const Snapshot& snapshot, Session& session) {
   const auto previous = std::exchange(source_, snapshot.source);
   const bool new_scene = !previous || (previous != source_ &&
                                        (previous->scene == 0 || previous->scene != source_->scene));
@@ -85,6 +85,7 @@ void View::placeCamera(const Snapshot& snapshot) {
   const Aabb all = shownBox(snapshot.scene.world, *snapshot.boxes);
   space_ = viewSpaceOf(all);
   camera_ = focusedOn(viewedFrom({}, Direction::figure), space_.toView(all), aspect());
+  if (session.first_camera) camera_ = *std::exchange(session.first_camera, {});
   flight_.reset();
 }
 
@@ -126,7 +127,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Inp
   camera_moved_ = false;
   if (!input.snapshot) return drawEmpty(ui, input.hint);
   if (content_.update(input.snapshot, progress.comparison, session, ui.theme.dark)) {
-    placeCamera(*input.snapshot);
+    placeCamera(*input.snapshot, session);
     answer_ = answerText(*input.snapshot, progress.tracks, input.track, content_.selection());
   }
   if (input.leader != nullptr) {

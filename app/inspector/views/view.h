@@ -69,7 +69,7 @@ class View {
   void drawEmpty(Ui& ui, const std::string& hint);
   void drawScene(const Ui& ui, const Session& session);
   /// Resets the camera for a new scene.
-  void placeCamera(const Snapshot& snapshot);
+  void placeCamera(const Snapshot& snapshot, Session& session);
   void startRequestedFlight(Session& session);
   void flyTo(const OrbitCamera& to);
   void advanceFlight(float seconds);

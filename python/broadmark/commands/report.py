@@ -32,12 +32,30 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="include pictures of the scenes, drawn by the program (default: if it is found)",
     )
+    parser.add_argument(
+        "--program-page",
+        default=os.environ.get("BROADMARK_PAGE", ""),
+        type=_page,
+        metavar="URL",
+        help="address of the program for browsers (docs/browser.md), to which the cases link "
+        "(default: BROADMARK_PAGE)",
+    )
+
+
+def _page(address: str) -> str:
+    if not address.startswith(("http://", "https://")) and address:
+        raise argparse.ArgumentTypeError(f"'{address}' does not begin with http:// or https://")
+    return address
 
 
 def main(options: argparse.Namespace) -> None:
     results = selection.read_selected(options, may_be_empty=True)
     for note in write_report(
-        results, options.output, title=options.title, pictures=options.pictures
+        results,
+        options.output,
+        title=options.title,
+        pictures=options.pictures,
+        program_page=options.program_page,
     ):
         print(note, file=sys.stderr if is_standard_output(options.output) else sys.stdout)
     if not is_standard_output(options.output):

@@ -47,10 +47,10 @@ FACTS = [
 ]
 
 
-def page_data(results: Results) -> dict[str, Any]:
+def page_data(results: Results, *, program_page: str = "") -> dict[str, Any]:
     """The data of the page, without times by frame and pictures.
 
-    Accepts any text of a results file.
+    Accepts any text of a results file. `program_page`: where browsers find the program; "": no links.
     """
     cases, details = results.cases, results.details
     machines = [int(number) for number in cases.get("environment", [])]
@@ -73,6 +73,8 @@ def page_data(results: Results) -> dict[str, Any]:
     columns["condition_command"] = _texts(
         shlex.join(rerun.condition_words(case)) for case in details
     )
+    if program_page:
+        columns["address"] = _texts(map(rerun.address, details))
     for part, words in (("variant", rerun.variant_words), ("again", rerun.again_words)):
         columns[f"{part}_command"] = _texts(
             shlex.join(words(case, file)) for case, file in zip(details, files)
@@ -86,6 +88,7 @@ def page_data(results: Results) -> dict[str, Any]:
         "looks": {name: look_of(name) for name in map(str, cases.get("algorithm", []))},
         "parameters": _varying_parameters(details),
         "wrong_frames": _wrong_frames(details),
+        "program_page": program_page,
     }
 
 

@@ -38,17 +38,23 @@ SCRIPTS = (
 
 
 def write_report(
-    results: Results, path: str | os.PathLike[str], *, title: str = "", pictures: bool = True
+    results: Results,
+    path: str | os.PathLike[str],
+    *,
+    title: str = "",
+    pictures: bool = True,
+    program_page: str = "",
 ) -> list[str]:
     """Writes the page and returns notes on missing parts, a sentence each.
 
-    `pictures`: draws the scenes if the program `broadmark` is found. Raises InputError, without a new
+    `pictures`: draws the scenes if the program `broadmark` is found. `program_page`: the address of the
+    program for browsers, to which the cases link. Raises InputError, without a new
     file, if d3 is missing or the file cannot be written.
     """
     d3, licence = _read_text(D3), _read_text(D3_LICENCE)
     points = points_per_case(len(results.details))
     try:
-        data = page_data(results)
+        data = page_data(results, program_page=program_page)
         lines = "\n".join(timeline(case, points) for case in results.details)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError(

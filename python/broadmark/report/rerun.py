@@ -7,6 +7,7 @@ A command has three parts that many cases share: the source (`source_words`), th
 from __future__ import annotations
 
 import pathlib
+import urllib.parse
 from typing import Any
 
 from broadmark.program import as_options
@@ -70,6 +71,22 @@ def condition_words(case: dict[str, Any]) -> list[str]:
         in_process=in_process,
         pin=conditions.get("pinned", False),
     )
+
+
+def address(case: dict[str, Any]) -> str:
+    """The part after # of an address that opens a case in a browser (docs/browser.md), at its first
+    wrong frame; "" if it needs a file, a plug-in or a device."""
+    source = case["recording"]["source"]
+    needs_files = not isinstance(source, dict) or "scene_file" in source or "input" in source
+    if needs_files or case.get("plugin") or case.get("device") or case.get("family") == "Python":
+        return ""
+    algorithm = case["algorithm"]
+    words = source_words(case["recording"], "") + as_options(
+        algorithm=algorithm,
+        param={f"{algorithm}:{name}": value for name, value in case["params"].items()},
+        frame=min((difference["frame"] for difference in case["differences"]), default=None),
+    )
+    return "&".join(urllib.parse.quote(word, safe="-_.~=,:/") for word in words)
 
 
 def again_words(case: dict[str, Any], results_file: str) -> list[str]:

@@ -44,6 +44,9 @@ function fillDetails(dialog, testCase) {
 
 function commandsOf(testCase) {
   return [
+    testCase.address ? element("p", {}, element("a",
+      { href: `${data.program_page}#${testCase.address}`, target: "_blank", rel: "noopener", "data-name": "browser" },
+      "Open in a browser")) : null,
     element("p", { class: "muted" }, "Run these commands in the folder in which this page was written; paths are relative to it."),
     copyable("From its results file, which verifies the recording",
              joined("broadmark --headless", testCase.again_command, testCase.condition_command), "again"),
