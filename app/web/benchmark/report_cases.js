@@ -37,12 +37,14 @@ function withCases(html, results) {
   const known = columns.machine.map((_, i) => i);
   const fields = data.fields.filter(({ key, path }) => key in columns && !path.startsWith("recording/"));
 
+  const differing = new Set();
   for (const testCase of results.cases) {
-    const { name, objects } = testCase.recording;
+    const { name, objects, hash } = testCase.recording;
     const like = known.find((i) => {
       const recording = recordings[columns.recording[i]];
       return at(columns.algorithm, i) === testCase.algorithm && recording.scene === name && recording.objects === objects;
     });
+    if (recordings[columns.recording[like]].hash !== hash) differing.add(name);
     const row = Object.fromEntries(Object.entries(columns).map(([key, column]) => [key, at(column, like)]));
     for (const field of fields) row[field.key] = valueOfColumn(field, testCase);
     const times = testCase.frames.total[0] || [];
@@ -72,6 +74,10 @@ function withCases(html, results) {
   data.machines.push({ name: environment.host, facts });
   data.runs.push({ file: "this browser", command: `broadmark ${results.options.join(" ")}`, started: environment.started,
                    complete: results.complete });
+  if (differing.size) {
+    data.picture_notes.push(`${[...differing].join(", ")}: physics computed by another processor differs in the last `
+      + "digits, so the boxes here are alike but not the same.");
+  }
   data.title = "Broad phases, in this browser and natively";
   page.getElementById("data").textContent = JSON.stringify(data).replaceAll("<", "\\u003c").replaceAll(">", "\\u003e");
   page.getElementById("timelines").textContent = timelines.join("\n");
