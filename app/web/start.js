@@ -16,12 +16,29 @@ if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
     FS.mkdirTree("/bin/plugins");
     FS.writeFile("/bin/plugins/find-the-bug.so", "");
     FS.chdir("/home/web_user");
+    restore();
     // What is written here is saved by the browser. Files are complete once they have their name.
-    const rename = FS.rename;
+    const { rename, unlink } = FS;
     FS.rename = (from, to) => {
       rename(from, to);
-      if (/^\/home\/web_user\/[^.][^/]*$/.test(FS.lookupPath(to).path)) save(to);
+      const { path } = FS.lookupPath(to);
+      if (isKept(path)) localStorage.setItem(path, FS.readFile(path, { encoding: "utf8" }));
+      else if (/^\/home\/web_user\/[^.][^/]*$/.test(path)) save(to);
     };
+    FS.unlink = (path) => {
+      unlink(path);
+      localStorage.removeItem(path);
+    };
+  };
+  // Preferences and unsaved scenes outlive the page.
+  const isKept = (path) => /^\/home\/web_user\/\.(config|local)\/.*\.json$/.test(path);
+  const restore = () => {
+    for (const [path, text] of Object.entries(localStorage).filter(([key]) => isKept(key))) {
+      FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
+      // Files that were open are gone.
+      const recent = /"recent": *\[[^\]]*\]/;
+      FS.writeFile(path, path.includes("/.config/") ? text.replace(recent, '"recent": []') : text);
+    }
   };
   const save = (path) => {
     const link = document.createElement("a");

@@ -52,9 +52,9 @@ class Page:
         self.driver.get(self.address + "index.html#" + "&".join(arguments))
         self.until("frame", lambda frame: frame != "")
 
-    def wait(self, script, *values):
+    def wait(self, script, *values, patience=PATIENCE):
         """Waits until a script returns a true value, and returns it."""
-        wait = WebDriverWait(self.driver, PATIENCE, 0.2)
+        wait = WebDriverWait(self.driver, patience, 0.2)
         return wait.until(lambda driver: driver.execute_script("return " + script, *values), script)
 
     def value(self, name):

@@ -1,5 +1,7 @@
 """The inspector in a browser."""
 
+from conftest import Page
+
 
 def test_finds_the_planted_fault(page):
     page.open()
@@ -70,3 +72,27 @@ def test_a_dropped_recording_opens(page):
 def test_a_bad_address_is_explained(page):
     page.driver.get(page.address + "index.html#--no-such-option")
     page.wait("document.getElementById('message').innerText.includes('--no-such-option')")
+
+
+def test_preferences_outlive_the_page(page):
+    page.open()
+    assert page.value("theme") == "dark"
+    page.press("View")
+    page.press("View menu/Light")
+    page.wait("Object.values(localStorage).some((text) => text.includes('\"dark\": false'))")
+    page.open()
+    assert page.value("theme") == "light"
+    assert page.complaints() == []
+
+
+def test_memory_stays_the_same_while_playing(address):
+    page = Page(address, 1280, 800)
+    try:
+        page.open(["freefall", "--objects", "500", "--frames", "60", "--algorithm", "columns,tide"])
+        page.press("Playback/Loop")
+        page.press("Playback/Play")
+        minutes = "performance.now() > arguments[0] * 60e3 && Module.HEAPU8.length"
+        early = page.wait(minutes, 2, patience=180)
+        assert page.wait(minutes, 10, patience=600) == early
+    finally:
+        page.driver.quit()
