@@ -29,8 +29,8 @@ class CompactingAdapter final : public Adapter, private PairMap {
   explicit CompactingAdapter(std::unique_ptr<BroadPhase> algorithm)
       : Adapter(std::move(algorithm)) {}
 
-  void initialize(const SceneInfo& scene, const Frame& first,
-                  ExecutionContext& execution) override {
+  [[gnu::cold]] void initialize(const SceneInfo& scene, const Frame& first,
+                                ExecutionContext& execution) override {
     team_ = &execution.team();
     margin_ = algorithm_->margin();
     filter_ = scene.filter;

@@ -24,8 +24,8 @@ class EventsFromPairs final : public Adapter {
   explicit EventsFromPairs(std::unique_ptr<BroadPhase> algorithm) : Adapter(std::move(algorithm)) {}
 
   /// Finds the pairs of the initial pose as in a frame without changes.
-  void initialize(const SceneInfo& scene, const Frame& first,
-                  ExecutionContext& execution) override {
+  [[gnu::cold]] void initialize(const SceneInfo& scene, const Frame& first,
+                                ExecutionContext& execution) override {
     team_ = &execution.team();
     bodies_ = first.boxes.size();
     body_bits_ = static_cast<int>(std::bit_width(bodies_));

@@ -18,7 +18,7 @@ namespace broadmark {
 class WorldLattice {
  public:
   /// Makes the lattice as close to a cube as the number of worlds allows.
-  explicit WorldLattice(const SceneInfo& scene) : world_(scene.world) {
+  [[gnu::cold]] explicit WorldLattice(const SceneInfo& scene) : world_(scene.world) {
     const std::span<const std::uint32_t> worlds = scene.filter.worlds();
     std::vector<std::uint32_t> present(worlds.begin(), worlds.end());
     std::ranges::sort(present);

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
+#include <utility>
 
 #include "broadmark/collision_filter.h"
 
@@ -21,15 +21,17 @@ class NonCollidingLayers {
     const LayerMatrix matrix = filter.matrix();
     std::array<std::size_t, LayerMatrix::kLayers> population{};
     for (const std::uint32_t body : bodies) ++population[filter.layerOf(body)];
-    std::array<std::size_t, LayerMatrix::kLayers> order{};
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::ranges::greater{},
-                             [&](std::size_t layer) { return population[layer]; });
-    for (const std::size_t layer : order) {
-      if (population[layer] == 0 || matrix.collide(layer, layer) || collides_[layer]) continue;
+    while (true) {
+      const auto fullest = std::ranges::max_element(population);
+      const std::size_t members = std::exchange(*fullest, 0);
+      if (members == 0) return;
+      const auto layer = static_cast<std::size_t>(fullest - population.begin());
+      if (matrix.collide(layer, layer) || collides_[layer]) continue;
       members_[layer] = true;
-      body_count_ += population[layer];
-      for (const std::size_t other : order) collides_[other] |= matrix.collide(layer, other);
+      body_count_ += members;
+      for (std::size_t other = 0; other < collides_.size(); ++other) {
+        collides_[other] |= matrix.collide(layer, other);
+      }
     }
   }
 
