@@ -80,8 +80,8 @@ class Columns final : public PairBroadPhase {
          &min_share_us_, 0, 1'000'000});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first,
-                  ExecutionContext& execution) override {
+  [[gnu::cold]] void initialize(const SceneInfo& scene, const Frame& first,
+                                ExecutionContext& execution) override {
     PairBroadPhase::initialize(scene, first, execution);
     kernels_ = &kernels(execution.isa());
     dense_kernels_ = &overlapKernels(execution.isa());
@@ -456,14 +456,14 @@ std::vector<Algorithm> variants() {
       .traits = {.changing_worlds = ChangingWorlds::compacted,
                  .side_by_side_below = 400,
                  .max_objects = kMaxCellBodies - 1,
-                 .rare_parameters = {{"max_brute_force", "0"}}},
+                 .rare_parameters = {{{"max_brute_force", "0"}}}},
       .description = {.principle = "grid, sorting",
                       .optimisations = "sampled layout, quantised bounds, bucket sort",
                       .time = "O(n + w), w pairs that share a column and overlap along it",
                       .space = "O(n + k)",
                       .source = "Broadmark; Ericson 2005, 7.1 and 7.5"}};
   Algorithm parallel_family = family;
-  parallel_family.traits.rare_parameters["min_share_us"] = "0";
+  parallel_family.traits.rare_parameters.front()["min_share_us"] = "0";
   return {variantOf<Columns>(family, "columns", "sweep and prune in columns laid out by a sample",
                              {.vectorised = true}),
           variantOf<Columns>(parallel_family, "columns-mt",

@@ -9,6 +9,11 @@
 //                   PairSet: erase ended, insert began
 //                   CostModel: rebuild the grid?                CostModel: build a grid?
 //
+//                   bodies creep: candidates, the pairs of boxes enlarged by a margin
+//   updateObjects   move: is every box still within its reach? If not, new reaches: MarginPolicy
+//   updateStructures  columns, on the new reaches
+//   searchOverlaps  test the candidates. CostModel: build a grid?
+//
 //   MoveQuery             CellQuery            CellBucket, 64 bytes         Body, 64 bytes
 //   +-------------+       2x2x2 cells          +-----------------+          +------------+-------+
 //   | old and new |  per  +---+---+    per     | 5 packed bounds | overlap  | box.min    | frame |
@@ -20,11 +25,12 @@
 // A move query covers the old and the new box of a body: an overlap at only one of the two is an
 // event, so events need no stored pairs. Bodies at rest are visited only near moving bodies.
 //
-// O(m · k) per frame, m moving bodies with k bodies around each; O(n) in a full search; 0 if
-// nothing moves. Pairs as the answer cost O(1) more per event.
+// O(m · k) per frame, m moving bodies with k bodies around each; O(n) in a full search; O(m + c)
+// with c candidates; 0 if nothing moves. Pairs as the answer cost O(1) more per event.
 //
 // Source: Broadmark. Loose cells: T. Ulrich, "Loose Octrees", Game Programming Gems, 2000. Levels:
-// C. Ericson, "Real-Time Collision Detection", 2005, 7.2 (hierarchical hash grids).
+// C. Ericson, "Real-Time Collision Detection", 2005, 7.2 (hierarchical hash grids). Candidates:
+// L. Verlet, "Computer Experiments on Classical Fluids", 1967.
 
 #include "tide.h"
 
@@ -43,8 +49,10 @@
 #include "cell_body.h"
 #include "columns.h"
 #include "sample.h"
+#include "tide/candidate_pairs.h"
 #include "tide/cost_model.h"
 #include "tide/loose_grid.h"
+#include "tide/margin_policy.h"
 #include "variants.h"
 
 namespace broadmark::tide {
@@ -58,10 +66,18 @@ class Tide final : public BroadPhase {
            "cost of a full search, in percent of the predicted cost; the higher, the longer the "
            "grid is used",
            &full_search_cost_scale_, 1, 1'000'000});
+    visit({"candidates_cost_scale",
+           "cost of candidate pairs, in percent of the predicted cost; the lower, the sooner they "
+           "are used",
+           &candidates_cost_scale_, 1, 1'000'000});
+    visit({"max_margin",
+           "largest margin of candidate pairs, in percent of the mean edge; 0: no candidates",
+           &max_margin_, 0, 100});
   }
 
   void reportEvents() override { reports_events_ = true; }
-  void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
+  [[gnu::cold]] void initialize(const SceneInfo& scene, const Frame& first,
+                                ExecutionContext& execution) override;
   void updateObjects(const Frame& frame) override;
   void cleanCache() override;
   void updateStructures() override;
@@ -74,29 +90,43 @@ class Tide final : public BroadPhase {
     return {PairRuns(&began_run_, 1), PairRuns(&ended_run_, 1)};
   }
 
-  void drawStructure(DebugDraw& draw) const override;
-  void visitCounters(const CounterVisitor& visit) const override;
+  [[gnu::cold]] void drawStructure(DebugDraw& draw) const override;
+  [[gnu::cold]] void visitCounters(const CounterVisitor& visit) const override;
   [[nodiscard]] std::string validate() const override;
 
  private:
-  enum class Mode { grid, full };
+  enum class Mode { grid, candidates, full };
 
+  bool continueCandidates(const Frame& frame);
+  [[gnu::noinline]] void startCandidates(const Frame& frame);
   void switchToFullSearch(const Frame& frame);
   void runFullSearch(std::uint32_t frame, std::span<const Aabb> boxes);
   void buildGrid(std::span<const Aabb> boxes);
   void calibrateMoveCost(std::span<const Aabb> boxes);
   void searchGrid();
-  void copyFullSearchPairs();
+  void searchCandidates();
+  void copyPairs(PairRuns pairs);
   void countPairs();
 
+  [[nodiscard]] std::unique_ptr<BroadPhase> makeSearch() const;
+
   std::int64_t full_search_cost_scale_ = 100;
+  std::int64_t candidates_cost_scale_ = 100;
+  std::int64_t max_margin_ = 10;
   bool reports_events_ = false;
-  CollisionFilter filter_;
+  SceneInfo scene_;
+  ExecutionContext* execution_ = nullptr;
   Mode mode_ = Mode::grid;  ///< of this frame
   CostModel costs_;
 
   std::unique_ptr<BroadPhase> full_search_;
   std::vector<std::uint32_t> bodies_;  ///< all ids
+
+  MarginPolicy margins_;
+  std::optional<CandidatePairs> candidates_;
+  bool candidates_are_due_ = false;  ///< they have reaches, but are not searched
+  bool candidates_begin_ = false;    ///< in the next frame
+  PairBuffer found_;                 ///< in candidates, unless events are reported
 
   std::optional<LooseGrid> grid_;
   bool grid_is_current_ = false;  ///< has the boxes of the last frame
@@ -112,17 +142,19 @@ class Tide final : public BroadPhase {
   std::uint64_t pair_count_ = 0;
   std::uint64_t moves_ = 0;
   std::uint64_t builds_ = 0;
+  std::uint64_t searches_ = 0;  ///< for candidates
 };
 
 void Tide::initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) {
-  filter_ = scene.filter;
+  scene_ = scene;
+  execution_ = &execution;
+  margins_ = MarginPolicy(static_cast<double>(max_margin_) / 100);
   costs_ = CostModel(reports_events_ ? kEventCosts : kPairCosts,
                      static_cast<double>(full_search_cost_scale_) / 100, first.boxes.size(),
-                     isChangingWorld(scene));
+                     isChangingWorld(scene), static_cast<double>(candidates_cost_scale_) / 100);
   bodies_.resize(first.boxes.size());
   std::iota(bodies_.begin(), bodies_.end(), 0U);
-  full_search_ = columns::create();
-  if (isChangingWorld(scene)) full_search_ = compacted(std::move(full_search_));
+  full_search_ = makeSearch();
   if (reports_events_) full_search_ = withEvents(std::move(full_search_));
   full_search_->initialize(scene, first, execution);
   mode_ = Mode::full;
@@ -130,14 +162,24 @@ void Tide::initialize(const SceneInfo& scene, const Frame& first, ExecutionConte
   countPairs();
   grid_.emplace(execution.isa());
   buildGrid(first.boxes);
-  if (!reports_events_) copyFullSearchPairs();
+  if (!reports_events_) copyPairs(full_search_->overlaps());
+}
+
+std::unique_ptr<BroadPhase> Tide::makeSearch() const {
+  return isChangingWorld(scene_) ? compacted(columns::create()) : columns::create();
 }
 
 /// Chooses the mode of the frame. The choice has hysteresis: a grid is built only once its absence
 /// has cost as much as a build.
 void Tide::updateObjects(const Frame& frame) {
   moves_ = frame.changed->size();
-  builds_ = 0;
+  builds_ = searches_ = 0;
+  if (std::exchange(candidates_begin_, false)) {
+    mode_ = Mode::candidates;
+    grid_is_current_ = false;
+  }
+  if (mode_ == Mode::candidates && !grid_is_current_ && continueCandidates(frame)) return;
+  startCandidates(frame);
   if (grid_is_current_ && !costs_.fullSearchIsCheaper(moves_)) {
     mode_ = Mode::grid;
     grid_->resetWork();
@@ -145,7 +187,7 @@ void Tide::updateObjects(const Frame& frame) {
     return;
   }
   grid_is_current_ = false;
-  if (mode_ == Mode::grid) {
+  if (mode_ != Mode::full) {
     switchToFullSearch(frame);
     return;
   }
@@ -153,13 +195,35 @@ void Tide::updateObjects(const Frame& frame) {
   if (costs_.gridPays(moves_)) buildGrid(frame.boxes);
 }
 
-/// The full search missed the frames in the grid. Its events are relative to its previous frame, so
-/// the last of them is searched, too.
+/// Whether this frame is one of candidates, too: no body leaves its reach, or new ones pay.
+bool Tide::continueCandidates(const Frame& frame) {
+  if (candidates_->move(*frame.changed, frame.boxes)) {
+    margins_.count();
+    return true;
+  }
+  const float margin = margins_.marginToContinue(moves_, candidates_->size(), costs_);
+  if (margin == 0) return false;
+  candidates_->restart(frame.boxes, margin);
+  candidates_are_due_ = true;
+  return true;
+}
+
+/// Prepares candidates for the next frame if they would pay.
+void Tide::startCandidates(const Frame& frame) {
+  const float margin = margins_.marginToStart(frame.boxes, moves_, costs_);
+  if (margin == 0) return;
+  if (!candidates_) candidates_.emplace(makeSearch(), scene_, frame, *execution_);
+  candidates_->start(frame.boxes, margin);
+  candidates_are_due_ = candidates_begin_ = true;
+}
+
+/// The full search missed the frames in the other modes. Its events are relative to its previous
+/// frame, so the last of them is searched, too.
 void Tide::switchToFullSearch(const Frame& frame) {
-  mode_ = Mode::full;
+  const Mode before = std::exchange(mode_, Mode::full);
   if (reports_events_) {
-    grid_->copyBoxes(boxes_);
-    runFullSearch(frame.index - 1, boxes_);
+    if (before == Mode::grid) grid_->copyBoxes(boxes_);
+    runFullSearch(frame.index - 1, before == Mode::grid ? boxes_ : candidates_->boxes());
   }
   full_search_->updateObjects({frame.index, frame.boxes, bodies_});
 }
@@ -205,12 +269,18 @@ void Tide::cleanCache() {
 
 void Tide::updateStructures() {
   if (mode_ == Mode::full) full_search_->updateStructures();
+  if (std::exchange(candidates_are_due_, false)) {
+    candidates_->search();
+    ++searches_;
+  }
 }
 
 void Tide::searchOverlaps() {
   if (mode_ == Mode::full) {
     full_search_->searchOverlaps();
-    if (grid_is_current_ && !reports_events_) copyFullSearchPairs();
+    if (grid_is_current_ && !reports_events_) copyPairs(full_search_->overlaps());
+  } else if (mode_ == Mode::candidates) {
+    searchCandidates();
   } else {
     searchGrid();
   }
@@ -219,7 +289,7 @@ void Tide::searchOverlaps() {
 
 /// Finds events, applies them to the pairs, and rebuilds a grid with crowded cells.
 void Tide::searchGrid() {
-  grid_->findEvents(filter_, began_, ended_);
+  grid_->findEvents(scene_.filter, began_, ended_);
   grid_->endFrame();
   began_run_ = began_.run();
   ended_run_ = ended_.run();
@@ -235,10 +305,27 @@ void Tide::searchGrid() {
   }
 }
 
-/// A new grid continues from the pairs of the full search.
-void Tide::copyFullSearchPairs() {
+/// Tests the candidates, and builds a grid once so few bodies move that it pays.
+void Tide::searchCandidates() {
+  if (reports_events_) {
+    if (moves_ > 0) candidates_->findEvents(began_, ended_);
+    began_run_ = began_.run();
+    ended_run_ = ended_.run();
+  } else {
+    found_.clear();
+    candidates_->findPairs(found_);
+    pairs_run_ = found_.run();
+  }
+  const auto count = static_cast<double>(candidates_->size());
+  if (!costs_.gridPays(moves_, costs_.candidatesCost(moves_, count))) return;
+  buildGrid(candidates_->boxes());
+  if (!reports_events_) copyPairs(PairRuns(&pairs_run_, 1));
+}
+
+/// A new grid continues from these pairs.
+void Tide::copyPairs(PairRuns pairs) {
   pairs_.clear();
-  for (const PairRun pairs : full_search_->overlaps()) pairs_.insert(pairs);
+  for (const PairRun run : pairs) pairs_.insert(run);
   pairs_run_ = pairs_.run();
 }
 
@@ -254,6 +341,8 @@ void Tide::countPairs() {
 void Tide::drawStructure(DebugDraw& draw) const {
   if (mode_ == Mode::full) {
     full_search_->drawStructure(draw);
+  } else if (mode_ == Mode::candidates) {
+    candidates_->draw(draw);
   } else {
     grid_->draw(draw);
   }
@@ -266,6 +355,11 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
     full_search_->visitCounters(visit);
     return;
   }
+  if (mode_ == Mode::candidates) {
+    visit("candidates", candidates_->size());
+    visit("searches", searches_);
+    return;
+  }
   visit("looks", grid_->work().cell_queries);
   visit("tests", grid_->work().tests);
   visit("cell changes", grid_->work().cell_changes);
@@ -274,8 +368,8 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
 }
 
 std::string Tide::validate() const {
-  if (!grid_is_current_) return full_search_->validate();
-  return grid_->validate();
+  if (grid_is_current_) return grid_->validate();
+  return mode_ == Mode::candidates ? candidates_->validate() : full_search_->validate();
 }
 
 }  // namespace
@@ -290,14 +384,16 @@ std::vector<Algorithm> variants() {
                  .changing_worlds = ChangingWorlds::native,
                  .instance_per_world = true,
                  .max_objects = std::min<std::uint64_t>(kMaxCellBodies - 1, LooseGrid::kMaxBodies),
-                 .rare_parameters = {{"full_search_cost_scale", "1000000"}}},
+                 .rare_parameters = {{{"full_search_cost_scale", "1000000"}, {"max_margin", "0"}},
+                                     {{"candidates_cost_scale", "1"}}}},
       .description = {.principle = "grid",
-                      .optimisations = "events without pairs, hierarchical grid",
+                      .optimisations = "events without pairs, hierarchical grid, candidate pairs",
                       .time = "O(m · k), m moving bodies, k around each; O(n) if many move",
                       .space = "O(n)",
-                      .source = "Broadmark; Ulrich 2000, Ericson 2005, 7.2"}};
+                      .source = "Broadmark; Ulrich 2000; Ericson 2005, 7.2; Verlet 1967"}};
   return {variantOf<Tide>(
-      family, "tide", "loose grid queried around moving bodies; full search if many bodies move",
+      family, "tide",
+      "loose grid queried around moving bodies; candidates if they creep; full search if many move",
       {.vectorised = true})};
 }
 

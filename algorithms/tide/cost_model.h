@@ -29,6 +29,11 @@ struct Costs {
   double sampled = 17;      ///< per body of the sample
   double pair_test = 0.11;  ///< in brute force, instead of layout and sample
   double compaction = 15;   ///< per body of a changing world
+  // With candidate pairs.
+  double reach = 6;      ///< per body, of new candidates
+  double check = 2;      ///< per moving body
+  double candidate = 3;  ///< per candidate
+  double candidates_frame = 1000;
 };
 /// The costs of a full search are 0.88 times those fitted: on other processors it is cheaper, in
 /// relation to moves (docs/columns-and-tide.md).
@@ -43,24 +48,50 @@ class CostModel {
 
   CostModel() = default;
   CostModel(const Costs& costs, double full_search_scale, std::size_t bodies,
-            bool is_changing_world = false)
-      : costs_(costs), full_search_scale_(full_search_scale), bodies_(bodies) {
+            bool is_changing_world = false, double candidates_scale = 1)
+      : costs_(costs),
+        full_search_scale_(full_search_scale),
+        candidates_scale_(candidates_scale),
+        bodies_(bodies) {
     if (is_changing_world) costs_.body += costs_.compaction;
   }
 
   /// To be called in each frame.
   void setPairs(std::uint64_t pairs) { pairs_ = static_cast<double>(pairs); }
+  [[nodiscard]] double pairs() const { return pairs_; }
 
   [[nodiscard]] bool fullSearchIsCheaper(std::size_t moves) const {
     return gridCost(moves) > fullSearchCost();
   }
 
-  /// To be called after a full search; `moves` bodies moved. Whether a grid pays: since the last
-  /// one, full searches have cost as much more than the grid as it takes to build one.
-  bool gridPays(std::size_t moves) {
+  /// To be called after a full search, or another frame without the grid at this cost; `moves`
+  /// bodies moved. Whether a grid pays: since the last one, frames have cost as much more than in
+  /// the grid as it takes to build one.
+  bool gridPays(std::size_t moves) { return gridPays(moves, fullSearchCost()); }
+  bool gridPays(std::size_t moves, double cost) {
     move_cost_ = std::lerp(move_cost_, costs_.move + costs_.cell_query, kDecayRate);
-    regret_ = std::max(0.0, regret_ + fullSearchCost() - gridCost(moves));
+    regret_ = std::max(0.0, regret_ + cost - gridCost(moves));
     return regret_ >= buildCost() + costs_.change * pairs_;
+  }
+
+  [[nodiscard]] double fullSearchCost() const { return searchCost(costs_.body, costs_.pair); }
+  /// Of a frame whose moves stay within their reaches.
+  [[nodiscard]] double candidatesCost(std::size_t moves, double candidates) const {
+    return candidates_scale_ *
+           (costs_.candidates_frame + costs_.check * static_cast<double>(moves) +
+            costs_.candidate * candidates);
+  }
+  /// Whether so many candidates, which serve `frames` frames, are clearly cheaper than both the
+  /// grid and full searches.
+  [[nodiscard]] bool candidatesPay(std::size_t moves, double candidates, double frames) const {
+    constexpr double kClearly = 0.8;
+    const double in_grid = kClearly * gridCost(moves);
+    const double cost = candidatesCost(moves, candidates);
+    if (cost >= in_grid) return false;  // mostly
+    const double search =
+        searchCost(kPairCosts.body, kPairCosts.pair) + costs_.reach * static_cast<double>(bodies_);
+    return cost + candidates_scale_ * search / frames <
+           std::min(in_grid, kClearly * fullSearchCost());
   }
 
   /// Starts over with a new grid, in which each calibration batch of `moves` moves took this work.
@@ -97,13 +128,13 @@ class CostModel {
   [[nodiscard]] double gridCost(std::size_t moves) const {
     return move_cost_ * static_cast<double>(moves);
   }
-  [[nodiscard]] double fullSearchCost() const {
+  [[nodiscard]] double searchCost(double per_body, double per_pair) const {
     const auto bodies = static_cast<double>(bodies_);
-    const double search =
+    const double layout =
         bodies_ <= columns::kMaxBruteForce
             ? costs_.pair_test * bodies * bodies / 2
             : costs_.layout + costs_.sampled * static_cast<double>(sampleSize(bodies_));
-    return full_search_scale_ * (search + costs_.body * bodies + costs_.pair * pairs_);
+    return full_search_scale_ * (layout + per_body * bodies + per_pair * pairs_);
   }
   [[nodiscard]] double buildCost() const { return costs_.build * static_cast<double>(bodies_); }
   /// Mean cost of a move.
@@ -115,6 +146,7 @@ class CostModel {
 
   Costs costs_;
   double full_search_scale_ = 1;
+  double candidates_scale_ = 1;
   std::size_t bodies_ = 0;
   double pairs_ = 0;
   double move_cost_ = 0;   ///< estimate

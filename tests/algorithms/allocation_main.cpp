@@ -80,7 +80,7 @@ std::vector<Algorithm> allocationFreeAlgorithms() {
 long allocationsPerRound(const Algorithm& algorithm, const Configuration& config,
                          std::size_t bodies, const CollisionFilter& filter = {},
                          bool filter_changes = false) {
-  constexpr int kRoundsBefore = 3;
+  constexpr int kRoundsBefore = 12;  // until no algorithm tries another mode
   const auto frames = framesOf({"drifting", inputs::drifting}, bodies, 6);
   SceneInfo scene = sceneOf(frames);
   scene.filter = filter;

@@ -72,10 +72,12 @@ inline std::vector<Configuration> allConfigurations(const Algorithm& algorithm) 
   std::vector<Configuration> all = configurations(algorithm);
   const std::vector<Configuration> for_events = eventConfigurations(algorithm);
   all.insert(all.end(), for_events.begin(), for_events.end());
-  if (algorithm.traits.rare_parameters.empty()) return all;
-  for (std::size_t i = all.size(); i-- > 0;) {
-    all.push_back(all[i]);
-    all.back().parameters = algorithm.traits.rare_parameters;
+  const std::vector<Configuration> usual = all;
+  for (const ParameterValues& rare : algorithm.traits.rare_parameters) {
+    for (Configuration configuration : usual) {
+      configuration.parameters = rare;
+      all.push_back(configuration);
+    }
   }
   return all;
 }

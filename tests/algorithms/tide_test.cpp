@@ -57,7 +57,8 @@ SceneInfo sceneFor(std::size_t bodies) {
   return scene;
 }
 
-const ParameterValues kGridOnly = algorithmOf("tide").traits.rare_parameters;
+const ParameterValues kGridOnly = algorithmOf("tide").traits.rare_parameters.front();
+const ParameterValues kCandidates = algorithmOf("tide").traits.rare_parameters.back();
 
 /// One for each kind of answer.
 std::vector<TestRun> testRuns(const ParameterValues& parameters) {
@@ -77,6 +78,66 @@ TEST(Tide, FindsBodiesOfAllSizesThatMoveAppearAndVanish) {
     for (int frame = 0; frame < 200; ++frame) {
       boxes = withMovers(
           boxes, static_cast<std::size_t>(random.integer(0, frame % 10 == 0 ? 400 : 20)), random);
+      ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+      ASSERT_EQ(test_run.broadPhase().validate(), "") << "frame " << frame;
+    }
+  }
+}
+
+bool usesCandidates(TestRun& test_run) {
+  return countersOf(test_run.broadPhase()).contains("candidates");
+}
+
+/// All bodies creep, each in a direction of its own.
+void creep(std::vector<Aabb>& boxes, float step) {
+  for (std::size_t body = 0; body < boxes.size(); ++body) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float move = (body >> axis & 1) != 0 ? step : -step;
+      boxes[body].min[axis] += move;
+      boxes[body].max[axis] += move;
+    }
+  }
+}
+
+// Bodies that creep: a search serves many frames. Then one of them jumps in each frame.
+TEST(Tide, TestsCandidatesWhereBodiesCreep) {
+  constexpr std::size_t kBodies = 2000;
+  bool reports_events = false;
+  for (TestRun& test_run : testRuns({})) {
+    std::vector<Aabb> boxes = inputs::uniform(kBodies, 0, 1);
+    test_run.start(sceneFor(kBodies), boxes);
+    std::uint64_t searches = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      creep(boxes, 0.002F);
+      ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+      ASSERT_EQ(test_run.broadPhase().validate(), "") << "frame " << frame;
+      EXPECT_EQ(usesCandidates(test_run), frame >= 2) << "frame " << frame;
+      if (usesCandidates(test_run)) searches += countersOf(test_run.broadPhase()).at("searches");
+    }
+    EXPECT_LE(searches, 6U);
+    inputs::Random random(3, 0);
+    for (int frame = 0; frame < 60; ++frame) {
+      creep(boxes, 0.002F);
+      boxes[17] = inputs::boxAt(random.inCube(20), {1, 1, 1});
+      ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+    }
+    EXPECT_TRUE(reports_events || !usesCandidates(test_run)) << "each frame needs a search";
+    reports_events = true;  // the second run
+  }
+}
+
+// One that vanishes while all creep, and comes back with another filter, is found by a new search.
+TEST(Tide, TestsCandidatesWithBodiesThatComeAndGo) {
+  constexpr std::size_t kBodies = 60;
+  for (TestRun& test_run : testRuns(kCandidates)) {
+    inputs::Random random(4, 0);
+    std::vector<Aabb> boxes = inputs::uniform(kBodies, 0, 1);
+    std::vector<Aabb> hidden(kBodies, kEmptyBox);
+    test_run.start(sceneFor(kBodies), boxes);
+    for (int frame = 0; frame < 100; ++frame) {
+      creep(boxes, frame % 20 < 10 ? 0.01F : -0.01F);
+      const auto body = static_cast<std::size_t>(random.integer(0, kBodies - 1));
+      if (frame % 3 == 0) std::swap(boxes[body], hidden[body]);
       ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
       ASSERT_EQ(test_run.broadPhase().validate(), "") << "frame " << frame;
     }

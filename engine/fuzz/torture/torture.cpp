@@ -51,7 +51,8 @@ void randomize(Random& random, const Parameter& parameter) {
 /// The defaults half of the time, and often those for code that is seldom reached.
 ParameterValues randomParameters(Random& random, const Algorithm& algorithm) {
   if (random.onceIn(2)) return {};
-  if (random.onceIn(3)) return algorithm.traits.rare_parameters;
+  const std::vector<ParameterValues>& rare = algorithm.traits.rare_parameters;
+  if (!rare.empty() && random.onceIn(2)) return random.anyOf(rare);
   const std::unique_ptr<BroadPhase> instance = algorithm.create();
   instance->visitParameters([&](const Parameter& parameter) {
     if (random.onceIn(2)) randomize(random, parameter);

@@ -67,9 +67,9 @@ struct AlgorithmTraits {
   std::string exclusive = {};
   /// Its times are those that an external program reports; its memory is not known.
   bool self_timed = false;
-  /// Parameter values for code that the default values hardly ever reach: tests run each
-  /// configuration with these, too.
-  ParameterValues rare_parameters = {};
+  /// Sets of parameter values for code that the default values hardly ever reach: tests run each
+  /// configuration with each of them, too.
+  std::vector<ParameterValues> rare_parameters = {};
 };
 
 /// A row of the paper's Table 1, beyond the traits.

@@ -1,0 +1,158 @@
+#include "tide/candidate_pairs.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "corner.h"
+#include "prefetch.h"
+
+namespace broadmark::tide {
+namespace {
+
+constexpr std::size_t kBlock = 1024;  ///< candidates whose pairs are written at a time
+
+bool isWithin(const Aabb& box, const Aabb& reach) {
+  return isEveryAxis((cornerOf(box.min) >= cornerOf(reach.min)) &
+                     (cornerOf(box.max) <= cornerOf(reach.max)));
+}
+
+std::uint32_t overlap(const Aabb& a, const Aabb& b) {
+  return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)))
+             ? 1
+             : 0;
+}
+
+/// An absent body has no reach.
+Aabb reachOf(const Aabb& box, float margin) {
+  if (isEmpty(box)) return box;
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  Aabb reach = enlarged(box, margin);
+  for (int axis = 0; axis < 3; ++axis) {
+    reach.min[axis] = std::max(reach.min[axis], -kLargest);
+    reach.max[axis] = std::min(reach.max[axis], kLargest);
+  }
+  return reach;
+}
+
+}  // namespace
+
+CandidatePairs::CandidatePairs(std::unique_ptr<BroadPhase> search, const SceneInfo& scene,
+                               const Frame& frame, ExecutionContext& execution)
+    : search_(std::move(search)),
+      bodies_(frame.boxes.size()),
+      boxes_(frame.boxes.size()),
+      before_(frame.boxes.size()),
+      reaches_(frame.boxes.size()) {
+  std::iota(bodies_.begin(), bodies_.end(), 0U);
+  constexpr std::span<const std::uint32_t> kNone;
+  search_->initialize(scene, {.index = 0, .boxes = frame.boxes, .changed = kNone}, execution);
+}
+
+void CandidatePairs::start(std::span<const Aabb> boxes, float margin) {
+  boxes_.assign(boxes.begin(), boxes.end());
+  before_ = boxes_;
+  for (std::size_t i = 0; i < boxes.size(); ++i) reaches_[i] = reachOf(boxes[i], margin);
+}
+
+bool CandidatePairs::move(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!isWithin(boxes[bodies[i]], reaches_[bodies[i]])) return false;
+  }
+  for (const std::uint32_t body : bodies) {
+    boxes_[body] = boxes[body];
+    if (isEmpty(boxes[body])) reaches_[body] = boxes[body];  // as in search()
+  }
+  return true;
+}
+
+void CandidatePairs::restart(std::span<const Aabb> boxes, float margin) {
+  std::swap(before_, boxes_);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    boxes_[i] = boxes[i];
+    reaches_[i] = reachOf(merged(before_[i], boxes[i]), margin);
+  }
+}
+
+void CandidatePairs::search() {
+  search_->updateObjects({.index = ++searches_, .boxes = reaches_, .changed = bodies_});
+  search_->cleanCache();
+  search_->updateStructures();
+  search_->searchOverlaps();
+  // Candidates with an absent body serve its ended pairs only: it may come back with another
+  // filter.
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (isEmpty(boxes_[i])) reaches_[i] = boxes_[i];
+  }
+  candidates_.resize(pairCount(search_->overlaps()));
+  Candidate* to = candidates_.data();
+  for (const PairRun run : search_->overlaps()) {
+    for (const Pair pair : run) {
+      *to++ = {pair.a, pair.b | (overlap(before_[pair.a], before_[pair.b]) * kOverlaps)};
+    }
+  }
+}
+
+void CandidatePairs::findPairs(PairBuffer& pairs) const {
+  const Candidate* const candidates = candidates_.data();
+  for (std::size_t first = 0; first < size(); first += kBlock) {
+    const std::size_t end = std::min(first + kBlock, size());
+    Pair* to = pairs.room(kBlock);
+    const Pair* const begin = to;
+    for (std::size_t i = first; i < end; ++i) {
+      const Candidate ahead = candidates[std::min(i + kPrefetchDistance, size() - 1)];
+      prefetch(&boxes_[ahead.a]);
+      prefetch(&boxes_[ahead.b & ~kOverlaps]);
+      const Pair pair{candidates[i].a, candidates[i].b & ~kOverlaps};
+      *to = pair;
+      to += overlap(boxes_[pair.a], boxes_[pair.b]);
+    }
+    pairs.advance(static_cast<std::size_t>(to - begin));
+  }
+}
+
+void CandidatePairs::findEvents(PairBuffer& began, PairBuffer& ended) {
+  Candidate* const candidates = candidates_.data();
+  for (std::size_t first = 0; first < size(); first += kBlock) {
+    const std::size_t end = std::min(first + kBlock, size());
+    Pair* const begins = began.room(kBlock);
+    Pair* const ends = ended.room(kBlock);
+    std::size_t began_count = 0;
+    std::size_t ended_count = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const Candidate ahead = candidates[std::min(i + kPrefetchDistance, size() - 1)];
+      prefetch(&boxes_[ahead.a]);
+      prefetch(&boxes_[ahead.b & ~kOverlaps]);
+      const Pair pair{candidates[i].a, candidates[i].b & ~kOverlaps};
+      const std::uint32_t now = overlap(boxes_[pair.a], boxes_[pair.b]);
+      const std::uint32_t before = candidates[i].b / kOverlaps;
+      candidates[i].b = pair.b | (now * kOverlaps);
+      begins[began_count] = ends[ended_count] = pair;
+      began_count += now & ~before;
+      ended_count += before & ~now;
+    }
+    began.advance(began_count);
+    ended.advance(ended_count);
+  }
+}
+
+void CandidatePairs::draw(DebugDraw& draw) const {
+  for (const Aabb& reach : reaches_) {
+    if (!isEmpty(reach)) draw.box(reach, StructureRole::cell, 0);
+  }
+  for (std::uint32_t body = 0; body < boxes_.size(); ++body) draw.tests(body, 0);
+  for (const Candidate candidate : candidates_) {
+    draw.tests(candidate.a, 1);
+    draw.tests(candidate.b & ~kOverlaps, 1);
+  }
+}
+
+std::string CandidatePairs::validate() const {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (!isEmpty(boxes_[i]) && !isWithin(boxes_[i], reaches_[i])) return "a body beyond its reach";
+  }
+  return search_->validate();
+}
+
+}  // namespace broadmark::tide
