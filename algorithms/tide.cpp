@@ -10,8 +10,8 @@
 //                   CostModel: rebuild the grid?                CostModel: build a grid?
 //
 //                   bodies creep: candidates, the pairs of boxes enlarged by a margin
-//   updateObjects   move: is every box still within its reach? If not, new reaches: MarginPolicy
-//   updateStructures  columns, on the new reaches
+//   updateObjects   move: is each in its fat box still? If not, new fat boxes: MarginPolicy
+//   updateStructures  columns, on the new fat boxes
 //   searchOverlaps  test the candidates. CostModel: build a grid?
 //
 //   MoveQuery             CellQuery            CellBucket, 64 bytes         Body, 64 bytes
@@ -124,7 +124,7 @@ class Tide final : public BroadPhase {
 
   MarginPolicy margins_;
   std::optional<CandidatePairs> candidates_;
-  bool candidates_are_due_ = false;  ///< they have reaches, but are not searched
+  bool candidates_are_due_ = false;  ///< they have fat boxes, but are not searched
   bool candidates_begin_ = false;    ///< in the next frame
   PairBuffer found_;                 ///< in candidates, unless events are reported
 
@@ -195,7 +195,7 @@ void Tide::updateObjects(const Frame& frame) {
   if (costs_.gridPays(moves_)) buildGrid(frame.boxes);
 }
 
-/// Whether this frame is one of candidates, too: no body leaves its reach, or new ones pay.
+/// Whether this frame is one of candidates, too: no body leaves its fat box, or new ones pay.
 bool Tide::continueCandidates(const Frame& frame) {
   if (candidates_->move(*frame.changed, frame.boxes)) {
     margins_.count();

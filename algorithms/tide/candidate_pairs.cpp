@@ -11,11 +11,11 @@
 namespace broadmark::tide {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  ///< candidates whose pairs are written at a time
+constexpr std::size_t kBlock = 1024;  ///< candidates, whose pairs are written together
 
-bool isWithin(const Aabb& box, const Aabb& reach) {
-  return isEveryAxis((cornerOf(box.min) >= cornerOf(reach.min)) &
-                     (cornerOf(box.max) <= cornerOf(reach.max)));
+bool isWithin(const Aabb& box, const Aabb& fat_box) {
+  return isEveryAxis((cornerOf(box.min) >= cornerOf(fat_box.min)) &
+                     (cornerOf(box.max) <= cornerOf(fat_box.max)));
 }
 
 std::uint32_t overlap(const Aabb& a, const Aabb& b) {
@@ -24,16 +24,16 @@ std::uint32_t overlap(const Aabb& a, const Aabb& b) {
              : 0;
 }
 
-/// An absent body has no reach.
-Aabb reachOf(const Aabb& box, float margin) {
+/// An absent body has no fat box.
+Aabb fatBoxOf(const Aabb& box, float margin) {
   if (isEmpty(box)) return box;
   constexpr float kLargest = std::numeric_limits<float>::max();
-  Aabb reach = enlarged(box, margin);
+  Aabb fat_box = enlarged(box, margin);
   for (int axis = 0; axis < 3; ++axis) {
-    reach.min[axis] = std::max(reach.min[axis], -kLargest);
-    reach.max[axis] = std::min(reach.max[axis], kLargest);
+    fat_box.min[axis] = std::max(fat_box.min[axis], -kLargest);
+    fat_box.max[axis] = std::min(fat_box.max[axis], kLargest);
   }
-  return reach;
+  return fat_box;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ CandidatePairs::CandidatePairs(std::unique_ptr<BroadPhase> search, const SceneIn
       bodies_(frame.boxes.size()),
       boxes_(frame.boxes.size()),
       before_(frame.boxes.size()),
-      reaches_(frame.boxes.size()) {
+      fat_boxes_(frame.boxes.size()) {
   std::iota(bodies_.begin(), bodies_.end(), 0U);
   constexpr std::span<const std::uint32_t> kNone;
   search_->initialize(scene, {.index = 0, .boxes = frame.boxes, .changed = kNone}, execution);
@@ -53,16 +53,16 @@ CandidatePairs::CandidatePairs(std::unique_ptr<BroadPhase> search, const SceneIn
 void CandidatePairs::start(std::span<const Aabb> boxes, float margin) {
   boxes_.assign(boxes.begin(), boxes.end());
   before_ = boxes_;
-  for (std::size_t i = 0; i < boxes.size(); ++i) reaches_[i] = reachOf(boxes[i], margin);
+  for (std::size_t i = 0; i < boxes.size(); ++i) fat_boxes_[i] = fatBoxOf(boxes[i], margin);
 }
 
 bool CandidatePairs::move(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!isWithin(boxes[bodies[i]], reaches_[bodies[i]])) return false;
+    if (!isWithin(boxes[bodies[i]], fat_boxes_[bodies[i]])) return false;
   }
   for (const std::uint32_t body : bodies) {
     boxes_[body] = boxes[body];
-    if (isEmpty(boxes[body])) reaches_[body] = boxes[body];  // as in search()
+    if (isEmpty(boxes[body])) fat_boxes_[body] = boxes[body];  // as in search()
   }
   return true;
 }
@@ -71,19 +71,19 @@ void CandidatePairs::restart(std::span<const Aabb> boxes, float margin) {
   std::swap(before_, boxes_);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     boxes_[i] = boxes[i];
-    reaches_[i] = reachOf(merged(before_[i], boxes[i]), margin);
+    fat_boxes_[i] = fatBoxOf(merged(before_[i], boxes[i]), margin);
   }
 }
 
 void CandidatePairs::search() {
-  search_->updateObjects({.index = ++searches_, .boxes = reaches_, .changed = bodies_});
+  search_->updateObjects({.index = ++searches_, .boxes = fat_boxes_, .changed = bodies_});
   search_->cleanCache();
   search_->updateStructures();
   search_->searchOverlaps();
   // Candidates with an absent body serve its ended pairs only: it may come back with another
   // filter.
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (isEmpty(boxes_[i])) reaches_[i] = boxes_[i];
+    if (isEmpty(boxes_[i])) fat_boxes_[i] = boxes_[i];
   }
   candidates_.resize(pairCount(search_->overlaps()));
   Candidate* to = candidates_.data();
@@ -138,8 +138,8 @@ void CandidatePairs::findEvents(PairBuffer& began, PairBuffer& ended) {
 }
 
 void CandidatePairs::draw(DebugDraw& draw) const {
-  for (const Aabb& reach : reaches_) {
-    if (!isEmpty(reach)) draw.box(reach, StructureRole::cell, 0);
+  for (const Aabb& fat_box : fat_boxes_) {
+    if (!isEmpty(fat_box)) draw.box(fat_box, StructureRole::cell, 0);
   }
   for (std::uint32_t body = 0; body < boxes_.size(); ++body) draw.tests(body, 0);
   for (const Candidate candidate : candidates_) {
@@ -150,7 +150,8 @@ void CandidatePairs::draw(DebugDraw& draw) const {
 
 std::string CandidatePairs::validate() const {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (!isEmpty(boxes_[i]) && !isWithin(boxes_[i], reaches_[i])) return "a body beyond its reach";
+    if (!isEmpty(boxes_[i]) && !isWithin(boxes_[i], fat_boxes_[i]))
+      return "a body beyond its fat box";
   }
   return search_->validate();
 }

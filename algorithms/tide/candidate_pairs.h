@@ -1,12 +1,11 @@
 // Candidates for pairs where bodies creep: the pairs of boxes that are enlarged by a margin. They
-// hold all overlapping pairs until a body leaves its enlarged box, so one search serves many
-// frames.
+// hold all overlapping pairs until a body leaves its fat box, so one search serves many frames.
 //
-//   reach   +-----------+    a frame: every moved box still within its reach?
-//           | +---+     |      yes: test the candidates with the boxes as they are
-//           | |box| --> |      no:  new reaches, around the boxes of this frame and the last;
-//           search | +---+     |
-//           +-----------+
+//   fat box  +-----------+    a frame: is every moved box within its fat box still?
+//            | +---+     |      yes: test the candidates with the boxes as they are
+//            | |box| --> |      no:  new fat boxes, around the boxes of this frame and the last;
+//            | +---+     |           search them
+//            +-----------+
 //
 // Source: L. Verlet, "Computer Experiments on Classical Fluids", 1967 (neighbour lists).
 #pragma once
@@ -30,9 +29,9 @@ class CandidatePairs {
 
   /// Starts with these boxes, and the pairs that overlap there.
   void start(std::span<const Aabb> boxes, float margin);
-  /// Moves these bodies to their boxes. Returns false, and moves none, if one leaves its reach.
+  /// Moves these bodies to their boxes. Returns false, and moves none, if one leaves its fat box.
   bool move(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
-  /// Moves all bodies to these boxes, with new reaches.
+  /// Moves all bodies to these boxes, with new fat boxes.
   void restart(std::span<const Aabb> boxes, float margin);
   /// To be called after start() and restart(). O(n).
   void search();
@@ -56,7 +55,7 @@ class CandidatePairs {
   std::vector<std::uint32_t> bodies_;  ///< all ids
   LargeVector<Aabb> boxes_;
   LargeVector<Aabb> before_;  ///< before restart()
-  LargeVector<Aabb> reaches_;
+  LargeVector<Aabb> fat_boxes_;
   LargeArray<Candidate> candidates_;
 };
 

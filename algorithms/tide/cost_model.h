@@ -30,7 +30,7 @@ struct Costs {
   double pair_test = 0.11;  ///< in brute force, instead of layout and sample
   double compaction = 15;   ///< per body of a changing world
   // With candidate pairs.
-  double reach = 6;      ///< per body, of new candidates
+  double fat_box = 6;    ///< per body, of new candidates
   double check = 2;      ///< per moving body
   double candidate = 3;  ///< per candidate
   double candidates_frame = 1000;
@@ -75,21 +75,21 @@ class CostModel {
   }
 
   [[nodiscard]] double fullSearchCost() const { return searchCost(costs_.body, costs_.pair); }
-  /// Of a frame whose moves stay within their reaches.
+  /// The cost of a frame whose moves stay within their fat boxes.
   [[nodiscard]] double candidatesCost(std::size_t moves, double candidates) const {
     return candidates_scale_ *
            (costs_.candidates_frame + costs_.check * static_cast<double>(moves) +
             costs_.candidate * candidates);
   }
-  /// Whether so many candidates, which serve `frames` frames, are clearly cheaper than both the
+  /// Whether this number of candidates, serving `frames` frames, is clearly cheaper than both the
   /// grid and full searches.
   [[nodiscard]] bool candidatesPay(std::size_t moves, double candidates, double frames) const {
     constexpr double kClearly = 0.8;
     const double in_grid = kClearly * gridCost(moves);
     const double cost = candidatesCost(moves, candidates);
     if (cost >= in_grid) return false;  // mostly
-    const double search =
-        searchCost(kPairCosts.body, kPairCosts.pair) + costs_.reach * static_cast<double>(bodies_);
+    const double search = searchCost(kPairCosts.body, kPairCosts.pair) +
+                          costs_.fat_box * static_cast<double>(bodies_);
     return cost + candidates_scale_ * search / frames <
            std::min(in_grid, kClearly * fullSearchCost());
   }

@@ -40,7 +40,7 @@ class MarginPolicy {
     return margin;
   }
 
-  /// To be called when a body has left its reach. Returns the margin of new candidates, or 0.
+  /// To be called when a body has left its fat box. Returns the margin of new candidates, or 0.
   float marginToContinue(std::size_t moves, std::size_t candidates, const CostModel& costs) {
     speed_ = margin_ / std::max(1.0, static_cast<double>(frames_));
     if (frames_ > kFrames / 2) failures_ = 0;

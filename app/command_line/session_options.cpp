@@ -278,8 +278,7 @@ SessionOptions SessionParser::options() const {
     throw InputError("--case: the source must be one results file");
   }
   if (parts::kInspector.included && options.headless && options.ui &&
-      options.inspector_options.script.empty() &&
-      options.screenshot.empty()) {
+      options.inspector_options.script.empty() && options.screenshot.empty()) {
     throw InputError("--ui: has no effect without --screenshot or --script");
   }
   if (options.inspector() && options.sources.size() > 1) {

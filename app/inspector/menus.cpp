@@ -99,8 +99,8 @@ void Inspector::askShare() {
               .chosen = [this](const fs::path& path) {
                 requestPicture(path, [this](const fs::path& file, const Picture& picture) {
                   const View& view = views_.first();
-                  writeTextFile(file, sharePage(session_, view.camera(), view.answer(),
-                                                encodePng(picture)));
+                  writeTextFile(
+                      file, sharePage(session_, view.camera(), view.answer(), encodePng(picture)));
                 });
               }});
 }

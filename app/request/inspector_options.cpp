@@ -41,12 +41,12 @@ OrbitCamera parseCamera(const std::string& text) {
     }
     return static_cast<float>(*number);
   };
-  return {.pivot = {parse(0, -kLimit, kLimit), parse(1, -kLimit, kLimit),
-                    parse(2, -kLimit, kLimit)},
-          .yaw = parse(3, -kFullTurn, kFullTurn) / kDegrees,
-          .pitch = std::clamp(parse(4, -kVertical, kVertical) / kDegrees, -OrbitCamera::kSteepest,
-                              OrbitCamera::kSteepest),
-          .distance = parse(5, OrbitCamera::kNearest, OrbitCamera::kFarthest)};
+  return {
+      .pivot = {parse(0, -kLimit, kLimit), parse(1, -kLimit, kLimit), parse(2, -kLimit, kLimit)},
+      .yaw = parse(3, -kFullTurn, kFullTurn) / kDegrees,
+      .pitch = std::clamp(parse(4, -kVertical, kVertical) / kDegrees, -OrbitCamera::kSteepest,
+                          OrbitCamera::kSteepest),
+      .distance = parse(5, OrbitCamera::kNearest, OrbitCamera::kFarthest)};
 }
 
 std::vector<std::uint32_t> parseBodies(const std::string& text) {

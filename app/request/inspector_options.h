@@ -12,9 +12,9 @@
 namespace broadmark {
 
 struct InspectorOptions {
-  std::filesystem::path script;           ///< of user actions; "": none
-  std::optional<OrbitCamera> camera;      ///< nothing: one that shows the whole scene
-  std::vector<std::uint32_t> selection;   ///< bodies
+  std::filesystem::path script;          ///< of user actions; "": none
+  std::optional<OrbitCamera> camera;     ///< nothing: one that shows the whole scene
+  std::vector<std::uint32_t> selection;  ///< bodies
 };
 
 /// "X,Y,Z,YAW,PITCH,DISTANCE": the pivot and the distance from it in view space, angles in degrees.

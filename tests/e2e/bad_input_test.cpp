@@ -124,7 +124,7 @@ TEST_F(BadInput, NumbersOutOfRange) {
   for (const std::string camera : {"1,2,3", "0,0,0,0,0,x", "0,0,0,0,91,1", "nan,0,0,0,0,1"}) {
     expectRefusal({"freefall", "--camera", camera}, {"--camera", "'" + camera + "'"});
   }
-  Arguments call = {"freefall", "--objects", "20", "--frames",     "3",
+  Arguments call = {"freefall", "--objects",  "20",           "--frames", "3",
                     "--ui",     "--headless", "--screenshot", "no.png"};
   call.insert(call.end(), {"--select", "3,20"});
   expectRefusal(call, {"--select", "20", "FreeFall", "19"});

@@ -35,10 +35,9 @@ class Share : public EndToEnd {
 };
 
 TEST_F(Share, ShowsThePictureAndTheCommandThatOpensItAgain) {
-  const std::string page =
-      pageOf({"brownian", "--objects", "50", "--frames", "5", "--engine", "kinematic",
-              "--algorithm", "kd,bf", "--param", "kd:margin=0.5", "--select", "7,3", "--camera",
-              "0.1,-0.2,0,30,-12.5,1.5"});
+  const std::string page = pageOf({"brownian", "--objects", "50", "--frames", "5", "--engine",
+                                   "kinematic", "--algorithm", "kd,bf", "--param", "kd:margin=0.5",
+                                   "--select", "7,3", "--camera", "0.1,-0.2,0,30,-12.5,1.5"});
   EXPECT_THAT(page, HasSubstr("<h1>Brownian, frame 2</h1>"));
   EXPECT_THAT(page, HasSubstr("kd reports "));
   EXPECT_THAT(page, HasSubstr("base64,iVBORw0KGgo")) << "the first bytes of a PNG";

@@ -95,8 +95,8 @@ class Session {
   // For the source that is being opened, reset once it is shown.
   std::optional<OrbitCamera> first_camera;
   BodySelection::Bodies first_selection;
-  bool cameras_linked = true;               ///< one camera moves both views
-  std::optional<OpenedResults> results;     ///< latest opened results
+  bool cameras_linked = true;            ///< one camera moves both views
+  std::optional<OpenedResults> results;  ///< latest opened results
   RunThread runs;
 
  private:

@@ -99,8 +99,7 @@ std::string openingCommand(const Session& session, const OrbitCamera& camera) {
   return command;
 }
 
-std::string openingLink(const Session& session, const OrbitCamera& camera,
-                        std::string_view page) {
+std::string openingLink(const Session& session, const OrbitCamera& camera, std::string_view page) {
   std::string link(page);
   for (const std::string& argument : openingArguments(session, camera)) {
     link += (link.size() == page.size() ? '#' : '&') + percentEncoded(argument);

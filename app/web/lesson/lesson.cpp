@@ -1,4 +1,5 @@
-// The figures of the lesson page: algorithms that run, frame by frame, on boxes that the page moves.
+// The figures of the lesson page: algorithms that run, frame by frame, on boxes that the page
+// moves.
 
 #include <emscripten.h>
 #include <fmt/format.h>
@@ -24,7 +25,11 @@ namespace {
 class Figure {
  public:
   Figure(const Algorithm& algorithm, const ParameterValues& parameters, std::uint32_t bodies)
-      : scene_{.name = "Lesson", .object_type = "Boxes", .objects = bodies, .frames = std::numeric_limits<std::int32_t>::max(), .world = kWorld},
+      : scene_{.name = "Lesson",
+               .object_type = "Boxes",
+               .objects = bodies,
+               .frames = std::numeric_limits<std::int32_t>::max(),
+               .world = kWorld},
         boxes_(bodies, kWorld),
         instance_(algorithm.create()) {
     setParameters(*instance_, parameters);
