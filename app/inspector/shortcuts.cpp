@@ -96,7 +96,7 @@ void Inspector::escape() {
   } else if (maximised_ || view_alone_) {
     maximised_.reset();
     view_alone_ = false;
-  } else if (views_.first().hands().cancel()) {
+  } else if (views_.first().hands().cancel(session_)) {
     return;
   } else if (session_.document.shown() && tools.tool == Tool::brush) {
     tools.tool = Tool::none;

@@ -28,6 +28,15 @@ Rgb colourOf(Handle handle, const Palette& theme) {
   return handle == Handle::all ? theme.accent : theme.axis[static_cast<std::size_t>(handle) % 3];
 }
 
+/// In the shown frame.
+Aabb boundsOfSelection(const ViewportManipulator::Input& input) {
+  Aabb all = kEmptyBox;
+  for (const std::uint32_t id : input.session.document.editor.selection()) {
+    all = merged(all, (*input.snapshot->boxes)[id]);
+  }
+  return all;
+}
+
 }  // namespace
 
 void ViewportManipulator::update(const Input& input) {
@@ -37,7 +46,8 @@ void ViewportManipulator::update(const Input& input) {
     source_ = shown;
     centred_bodies_.clear();
     stroke_.reset();
-    cancel();
+    resumes_ = false;
+    cancel(input.session);
   }
   text_.clear();
   if (input.snapshot->source == shown) ghosts_.clear();  // otherwise its bodies are not shown yet
@@ -50,14 +60,15 @@ void ViewportManipulator::updateGizmo(const Input& input) {
   const Tools& tools = document.tools;
   const scenes::SceneEditor& editor = document.editor;
   shapes_.clear();
-  const bool shown = document.atRest() && !editor.selection().empty() && tools.tool != Tool::none &&
-                     tools.tool != Tool::brush;
+  const bool shown =
+      document.shown() && input.snapshot->source == input.session.playback.source() &&
+      !editor.selection().empty() && tools.tool != Tool::none && tools.tool != Tool::brush;
   if (!shown) {
     drag_.reset();
     hot_.reset();
     return;
   }
-  pose_ = {.centre = centreOf(input.session)};
+  pose_ = {.centre = centreOf(input)};
   if (drag_ && input.mouse) {
     const GizmoDrag::Outcome outcome = drag_->at(*input.mouse, tools, tools.snaps != input.ctrl);
     change_ = outcome.change;
@@ -80,8 +91,17 @@ void ViewportManipulator::updateGizmo(const Input& input) {
                      : std::nullopt;
 }
 
-Vec3 ViewportManipulator::centreOf(const Session& session) {
-  const scenes::SceneEditor& editor = session.document.editor;
+Vec3 ViewportManipulator::centreOf(const Input& input) {
+  const scenes::SceneEditor& editor = input.session.document.editor;
+  if (!input.session.document.atRest()) {
+    centred_bodies_.clear();
+    const Aabb all = boundsOfSelection(input);
+    Vec3 centre{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      centre[axis] = static_cast<float>(broadmark::centreOf(all, axis));
+    }
+    return isEmpty(all) ? Vec3{} : centre;
+  }
   if (centred_bodies_ != editor.selection()) {
     centred_bodies_ = editor.selection();
     centre_ = editor.selectionCentre();
@@ -105,7 +125,7 @@ void ViewportManipulator::updateBrush(const Input& input) {
       previewDab(input);
     }
   } catch (const InputError& error) {
-    cancel();
+    cancel(input.session);
     text_ = error.what();
   }
 }
@@ -146,8 +166,13 @@ std::optional<Surface> ViewportManipulator::surfaceAt(const Input& input, Pixel 
   return last_surface_.surface;
 }
 
-void ViewportManipulator::captureBodies(const scenes::SceneEditor& editor) {
+void ViewportManipulator::captureBodies(const Input& input) {
+  const scenes::SceneEditor& editor = input.session.document.editor;
   captured_.clear();
+  if (!input.session.document.atRest()) {
+    captured_.push_back(scenes::bodyFilling(boundsOfSelection(input)));
+    return;
+  }
   const std::vector<scenes::AuthoredBody>& bodies = editor.scene().bodies;
   if (editor.selection().size() <= kMaxGhosts) {
     for (const std::uint32_t id : editor.selection()) captured_.push_back(bodies[id]);
@@ -164,8 +189,10 @@ bool ViewportManipulator::press(const Input& input) {
   if (!input.mouse) return false;
   const Document& document = input.session.document;
   if (hot_) {
-    captureBodies(document.editor);
+    captureBodies(input);
     change_ = {};
+    resumes_ = input.session.playback.playing();
+    input.session.playback.pause();
     drag_.emplace(document.tools.tool, *hot_, pose_, input.projection, *input.mouse);
   } else if (stroke_ && surfaceAt(input, *input.mouse)) {
     painting_ = true;
@@ -178,9 +205,13 @@ void ViewportManipulator::release(const Input& input) {
   Document& document = input.session.document;
   if (drag_) {
     drag_.reset();
-    document.edit([&](scenes::SceneEditor& editor) {
-      editor.transform(kTools.nameOf(document.tools.tool), change_);
-    });
+    if (document.atRest()) {
+      document.edit([&](scenes::SceneEditor& editor) {
+        editor.transform(kTools.nameOf(document.tools.tool), change_);
+      });
+    } else {
+      document.changeInFrame(change_, resumes_);
+    }
   } else if (painting_) {
     painting_ = false;
     document.add([this] { return stroke_->painted(); });
@@ -190,8 +221,9 @@ void ViewportManipulator::release(const Input& input) {
   stroke_.reset();
 }
 
-bool ViewportManipulator::cancel() {
+bool ViewportManipulator::cancel(Session& session) {
   if (!busy()) return false;
+  if (drag_ && resumes_) session.playback.play(true);
   drag_.reset();
   painting_ = false;
   stroke_.reset();

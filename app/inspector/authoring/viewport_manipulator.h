@@ -34,8 +34,8 @@ class ViewportManipulator {
   bool press(const Input& input);
   /// Handles the release: applies the drag or the stroke to the document.
   void release(const Input& input);
-  /// Cancels the drag or the stroke. Returns whether there was one.
-  bool cancel();
+  /// Cancels the drag or the stroke; plays on if a drag has paused. Returns whether there was one.
+  bool cancel(Session& session);
   /// Whether a drag or a stroke is in progress.
   [[nodiscard]] bool busy() const { return drag_.has_value() || painting_; }
   [[nodiscard]] bool painting() const { return painting_; }
@@ -52,12 +52,12 @@ class ViewportManipulator {
   void previewDab(const Input& input);
   void paintTo(const Input& input, Pixel to);
   std::optional<Surface> surfaceAt(const Input& input, Pixel pixel);
-  void captureBodies(const scenes::SceneEditor& editor);
+  void captureBodies(const Input& input);
   void drawHandle(const Ui& ui, const HandleShape& shape, const ViewProjection& projection,
                   Tool tool, ImVec2 corner) const;
   void drawGhosts(const Ui& ui, const ViewProjection& projection, ImVec2 corner) const;
-  /// Returns the common centre of the selected bodies, which is cached.
-  Vec3 centreOf(const Session& session);
+  /// Returns the common centre of the selected bodies, which is cached while they rest.
+  Vec3 centreOf(const Input& input);
 
   /// Source of the document's frames, replaced by each edit.
   std::shared_ptr<const FrameProviderRequest> source_;
@@ -67,6 +67,7 @@ class ViewportManipulator {
   GizmoPose pose_;
   std::optional<Handle> hot_;  ///< under the mouse, or dragged
   std::optional<GizmoDrag> drag_;
+  bool resumes_ = false;                        ///< plays on after the drag
   scenes::Transformation change_;               ///< of the drag
   std::vector<scenes::AuthoredBody> captured_;  ///< at its start
   scenes::BodyIds centred_bodies_;              ///< bodies of centre_

@@ -4,8 +4,10 @@
 
 #include <utility>
 
+#include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "broadmark/scenes/transformation.h"
 #include "support/words.h"
 
 namespace broadmark {
@@ -44,7 +46,16 @@ void Document::load(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
 }
 
 void Document::loadCurrentFrame() {
-  if (!playback_.source() || atRest()) return;
+  if (playback_.source() && !atRest()) readCurrentFrame();
+}
+
+void Document::changeInFrame(const scenes::Transformation& change, bool plays) {
+  readCurrentFrame();
+  pending_frame_->change = change;
+  pending_frame_->plays = plays;
+}
+
+void Document::readCurrentFrame() {
   // Reopen the source and simulate up to the frame, which provides all properties of the bodies.
   PendingFrame pending{.previous = playback_.source(),
                        .frame = playback_.frame(),
@@ -68,11 +79,36 @@ void Document::loadCurrentFrame() {
 void Document::advance(const RunProgress& progress) {
   if (!pending_frame_ || pending_frame_->shown != progress.source) return;
   const PendingFrame pending = *std::exchange(pending_frame_, {});
-  if (progress.failure.empty()) {
+  if (pending.change && progress.failure.empty()) {
+    playFrom(pending);
+  } else if (progress.failure.empty()) {
     load(std::move(*pending.scene), {}, true);
   } else {
     playback_.restore(pending.previous, pending.frame);
   }
+}
+
+void Document::playFrom(const PendingFrame& frame) {
+  std::vector<scenes::AuthoredBody>& bodies = frame.scene->bodies;
+  edit([&](scenes::SceneEditor& edited) {
+    const scenes::BodyIds selected = edited.selection();
+    if (bodies.size() != edited.scene().bodies.size()) {
+      throw InputError("bodies have come or gone: pause, and use From this frame");
+    }
+    for (const std::uint32_t id : selected) {
+      scenes::AuthoredBody& body = bodies[id];
+      const Pose moved = transformedPose(body, *frame.change);
+      body.shape = transformedShape(body, *frame.change);
+      body.pose = moved;
+    }
+    edited.selectAll();
+    std::size_t next = 0;
+    edited.change(fmt::format("drag in frame {} of", frame.frame),
+                  [&](scenes::AuthoredBody& body) { body = bodies[next++]; });
+    edited.select(selected);
+  });
+  simulate();
+  if (frame.plays) playback_.play(true);
 }
 
 void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {

@@ -13,6 +13,7 @@
 #include "broadmark/names.h"
 #include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene_editor.h"
+#include "broadmark/scenes/transformation.h"
 #include "inspector/jobs/jobs.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
@@ -84,6 +85,10 @@ class Document {
   void load(scenes::AuthoredScene scene, std::filesystem::path path = {}, bool unsaved = false);
   /// Replaces the scene by the shown frame, once that frame's bodies have been read.
   void loadCurrentFrame();
+  /// Changes the selected bodies in the shown frame of a simulation, and simulates on from there
+  /// once that frame's bodies have been read; plays if `plays`. The scene then starts with this
+  /// frame: a step to undo.
+  void changeInFrame(const scenes::Transformation& change, bool plays);
   /// Call with every progress of the playback's source.
   void advance(const RunProgress& progress);
 
@@ -118,7 +123,12 @@ class Document {
     std::uint32_t frame = 0;
     std::shared_ptr<const FrameProviderRequest> shown;
     std::shared_ptr<scenes::AuthoredScene> scene;
+    std::optional<scenes::Transformation> change = {};  ///< of the selected bodies
+    bool plays = false;                                 ///< after the change
   };
+
+  void readCurrentFrame();
+  void playFrom(const PendingFrame& frame);
 
   void showFrames(FrameProviderOpener open, bool simulated);
 

@@ -192,7 +192,7 @@ void View::handleRelease(const ViewportManipulator::Input& input) {
   } else if (drag == Drag::rectangle && dragged_) {
     selectWithin(input.session);
   } else if (!dragged_ && drag != Drag::pan) {
-    manipulator_.cancel();
+    manipulator_.cancel(input.session);
     click(input.session, ImGui::GetIO().MouseDoubleClicked[0]);
   }
 }
