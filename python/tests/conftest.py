@@ -23,6 +23,7 @@ def small_results(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     call(
         *("--headless", "brownian", "freefall", "--objects", "100,200", "--frames", "4", "--quiet"),
         *("--algorithm", "bf,sap-mt,kd,none", "--threads", "1,2", "--repetitions", "2"),
+        *("--time-limit", "60"),  # on a busy machine, too
         *("--json", str(folder / "results.json"), "--jsonl", str(folder / "results.jsonl")),
         *("--csv", str(folder / "results.csv"), "--csv-frames", str(folder / "frames.csv")),
         accept=(0, 1, 4),

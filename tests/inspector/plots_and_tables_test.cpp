@@ -10,6 +10,7 @@
 #include "broadmark/files.h"
 #include "inspector/inspector_test.h"
 #include "inspector/ui/terms.h"
+#include "request/inspector_options.h"
 
 namespace broadmark::tests {
 namespace {
@@ -130,6 +131,7 @@ TEST_F(PlotsAndTablesTest, APlotBecomesAPng) {
 TEST_F(PlotsAndTablesTest, ALinkHoldsTheSession) {
   setParameters(inspector.session().draft.scene(), {{"seed", "9"}});
   run({"sap"});
+  inspector.session().selection.select({7, 3});
   const auto command = std::ranges::find(inspector.commands(), "Copy link", &UserCommand::label);
   ::unsetenv("BROADMARK_PAGE");
   EXPECT_FALSE(command->isEnabled());
@@ -137,9 +139,11 @@ TEST_F(PlotsAndTablesTest, ALinkHoldsTheSession) {
   ASSERT_TRUE(command->isEnabled());
   command->action();
   ::unsetenv("BROADMARK_PAGE");
-  EXPECT_EQ(copied,
-            "https://example.org/page.html#freefall&--engine=bullet&--param=frames=20"
-            "&--param=objects=40&--param=seed=9&--algorithm=sap&--frame=20");
+  const std::string session =
+      "https://example.org/page.html#freefall&--engine=bullet&--param=frames=20"
+      "&--param=objects=40&--param=seed=9&--algorithm=sap&--frame=20&--select=3,7&--camera=";
+  ASSERT_THAT(copied, testing::StartsWith(session));
+  EXPECT_NO_THROW(static_cast<void>(parseCamera(copied.substr(session.size()))));
 }
 
 TEST_F(PlotsAndTablesTest, CasesAreCopiedBeyondTheVisibleRows) {
