@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "broadmark/aabb.h"
+
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
@@ -46,6 +48,11 @@ inline unsigned axesWhere(WholeCorner condition) {
 #endif
 }
 inline bool isEveryAxis(WholeCorner condition) { return axesWhere(condition) == 7; }
+
+/// As overlaps().
+inline bool overlapOnAxes(const Aabb& a, const Aabb& b) {
+  return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
+}
 
 /// Truncates; all components must be in the range of an integer.
 inline WholeCorner truncated(Corner corner) { return __builtin_convertvector(corner, WholeCorner); }

@@ -18,11 +18,7 @@ bool isWithin(const Aabb& box, const Aabb& fat_box) {
                      (cornerOf(box.max) <= cornerOf(fat_box.max)));
 }
 
-std::uint32_t overlap(const Aabb& a, const Aabb& b) {
-  return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)))
-             ? 1
-             : 0;
-}
+std::uint32_t overlap(const Aabb& a, const Aabb& b) { return overlapOnAxes(a, b) ? 1 : 0; }
 
 /// An absent body has no fat box.
 Aabb fatBoxOf(const Aabb& box, float margin) {

@@ -106,9 +106,6 @@ class LooseGrid {
   void queryOverflow(const Hit& overflow, Batch& batch) const;
   void collectCandidates(Batch& batch, std::size_t hits) const;
   [[nodiscard]] EventMask eventOf(const Batch& batch, const Candidate& candidate) const;
-  static bool overlapOnAxes(const Aabb& a, const Aabb& b) {
-    return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
-  }
 
   const Kernels* kernels_;
   GridLayout layout_;
