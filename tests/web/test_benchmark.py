@@ -31,7 +31,7 @@ def measure(page):
     return page.driver.execute_script("return window.results")
 
 
-def test_measures_and_reports_beside_published_results(page):
+def test_measures_and_reports_beside_published_results(page, tmp_path):
     results = measure(page)
     assert results["environments"][0]["cpu"] == "a processor"
     assert "Chrom" in results["environments"][0]["os"]
@@ -47,10 +47,10 @@ def test_measures_and_reports_beside_published_results(page):
         assert columns["seconds_per_frame"][i] == case["summary"]["seconds_per_frame"]
         assert columns["pairs_mean"][i] == case["pairs"]["mean"]
     assert page.complaints() == []
+    check_by_the_native_program(results, tmp_path)
 
 
-def test_the_native_program_reads_the_results(page, tmp_path):
-    results = measure(page)
+def check_by_the_native_program(results, folder):
     published = json.loads(
         gzip.decompress((ROOT / "app/web/benchmark/published.json.gz").read_bytes())
     )
@@ -64,8 +64,8 @@ def test_the_native_program_reads_the_results(page, tmp_path):
         for each in (results, published)
     ]
     assert hashes[0] == hashes[1]
-    (tmp_path / "browser.json").write_text(json.dumps(results))
+    (folder / "browser.json").write_text(json.dumps(results))
     command = [ROOT / "build/release/broadmark", "compare", "browser.json", "browser.json"]
     if command[0].exists():  # not in the root of ./check --web
-        ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        ended = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         assert ended.returncode == 0, ended.stdout + ended.stderr

@@ -1,7 +1,7 @@
 """The lesson in a browser."""
 
-#: A box's middle on the screen, and pairs by brute force.
-HELPERS = """
+#: The pairs of a figure's boxes, by brute force.
+BRUTE_FORCE = """
 const brute = (figure) => {
   const found = [];
   const { bodies } = figure;
@@ -25,7 +25,7 @@ def open_lesson(page):
 def test_every_figure_finds_the_pairs(page):
     open_lesson(page)
     wrong = page.driver.execute_script(
-        HELPERS
+        BRUTE_FORCE
         + """
         return figures.filter((figure) => {
           for (let frame = 0; frame < 200; ++frame) {
