@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "broadmark/scenes/transformation.h"
@@ -79,22 +78,24 @@ void Document::readCurrentFrame() {
 void Document::advance(const RunProgress& progress) {
   if (!pending_frame_ || pending_frame_->shown != progress.source) return;
   const PendingFrame pending = *std::exchange(pending_frame_, {});
-  if (pending.change && progress.failure.empty()) {
-    playFrom(pending);
-  } else if (progress.failure.empty()) {
-    load(std::move(*pending.scene), {}, true);
-  } else {
+  if (!progress.failure.empty()) {
     playback_.restore(pending.previous, pending.frame);
+  } else if (pending.change) {
+    playFrom(pending);
+  } else {
+    load(std::move(*pending.scene), {}, true);
   }
 }
 
 void Document::playFrom(const PendingFrame& frame) {
   std::vector<scenes::AuthoredBody>& bodies = frame.scene->bodies;
+  if (bodies.size() != editor.scene().bodies.size()) {
+    notices_.reportError("bodies have come or gone: use From this frame, and drag there");
+    playback_.restore(frame.previous, frame.frame);
+    return;
+  }
   edit([&](scenes::SceneEditor& edited) {
     const scenes::BodyIds selected = edited.selection();
-    if (bodies.size() != edited.scene().bodies.size()) {
-      throw InputError("bodies have come or gone: pause, and use From this frame");
-    }
     for (const std::uint32_t id : selected) {
       scenes::AuthoredBody& body = bodies[id];
       const Pose moved = transformedPose(body, *frame.change);
