@@ -15,6 +15,20 @@ namespace {
 constexpr float kOneRowWidth = 560;  // units: below, the playback has two rows
 constexpr double kSpeeds[] = {1, 5, 10, 15, 24, 30, 60, 120, 1000};
 
+/// Draws the progress of work on the status line, with a button if it can be cancelled there.
+void drawWork(Ui& ui, float fraction, const std::string& activity, Job* cancellable = nullptr) {
+  ImGui::SameLine(0, 14 * ui.scale);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
+  ImGui::ProgressBar(fraction, {90 * ui.scale, ImGui::GetTextLineHeight()}, "");
+  ImGui::SameLine();
+  ui.faint(activity);
+  if (cancellable != nullptr) {
+    ImGui::SameLine();
+    if (ui.button("Cancel", "Stop; nothing is written")) cancellable->cancel();
+  }
+  ImGui::PopStyleVar();
+}
+
 }  // namespace
 
 float Inspector::transportHeight(float width) const {
@@ -136,11 +150,10 @@ void Inspector::drawStatus(const RunProgress& progress) {
   } else {
     ui_.faint("Nothing is open: simulate a scene, or open or drop a file");
   }
-  if (!progress.activity.empty()) {
-    ImGui::SameLine(0, 14 * ui_.scale);
-    ImGui::ProgressBar(progress.fraction, {90 * ui_.scale, ImGui::GetTextLineHeight()}, "");
-    ImGui::SameLine();
-    ui_.faint(progress.activity);
+  if (!progress.activity.empty()) drawWork(ui_, progress.fraction, progress.activity);
+  BackgroundSave& save = session_.jobs.get<BackgroundSave>();
+  if (const SaveReport saving = save.report(); saving.state == TaskState::running) {
+    drawWork(ui_, saving.fraction, "saving " + saving.file.filename().string(), &save);
   }
   const Message& message = session_.notices.status;
   if (message.text.empty()) return;

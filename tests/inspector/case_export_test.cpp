@@ -184,7 +184,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   const RunProgress seen = findMismatch("faulty");
   ASSERT_TRUE(seen.stop);
   const std::uint32_t wrong = seen.stop->frame;
-  session.saveRecording(directory / "run.aabbs");
+  saveRecording(session, directory / "run.aabbs");
   waitUntilIdle();
   Results results;
   CaseResult failed;

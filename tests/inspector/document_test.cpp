@@ -205,7 +205,7 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
   session.draft.simulate();
   session.playback.seek(9);
   waitUntilIdle();
-  session.saveRecording(directory / "some.aabbs");
+  saveRecording(session, directory / "some.aabbs");
   waitUntilIdle();
   session.open(directory / "some.aabbs");
   waitUntilIdle();

@@ -45,6 +45,12 @@ inline RunProgress waitUntilIdle(Session& session) {
   return seen;
 }
 
+/// Saves the available frames, and waits until they are written.
+inline void saveRecording(Session& session, const std::filesystem::path& path) {
+  session.saveRecording(path);
+  session.jobs.get<BackgroundSave>().wait();
+}
+
 /// A case with these frame times in nanoseconds, a list per repetition.
 inline CaseResult caseOf(const std::string& algorithm, std::uint32_t objects,
                          const std::vector<std::vector<std::int64_t>>& repetitions) {

@@ -135,7 +135,7 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
   session.draft.simulate();
   session.playback.seek(4);
   const RunProgress live = waitUntilIdle();
-  session.saveRecording(directory / "some.aabbs");
+  saveRecording(session, directory / "some.aabbs");
   waitUntilIdle();
   EXPECT_TRUE(session.notices.errors.empty());
   session.open(directory / "some.aabbs");
@@ -171,7 +171,7 @@ TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
   session.draft.simulate();
   session.playback.seek(4);
   waitUntilIdle();
-  session.saveRecording(directory / "some.aabbs");
+  saveRecording(session, directory / "some.aabbs");
   waitUntilIdle();
   writeTextFile(
       directory / "settings.json",

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <new>
@@ -37,11 +38,12 @@ using Values = std::map<std::string, std::string>;
 
 /// The state of a job of any kind.
 struct JobStatus {
-  std::string activity;      ///< sentence for a running job
-  std::string outcome = {};  ///< status bar text of a finished job; "": none
-  bool is_error = false;     ///< the outcome is an error
-  Values values = {};        ///< for scripts and tests
-  std::string failure = {};  ///< error text, if failed
+  std::string activity;             ///< sentence for a running job
+  std::string outcome = {};         ///< status bar text of a finished job; "": none
+  bool is_error = false;            ///< the outcome is an error
+  std::filesystem::path file = {};  ///< written by a finished job, for the recent files; "": none
+  Values values = {};               ///< for scripts and tests
+  std::string failure = {};         ///< error text, if failed
 };
 
 /// Background work of one kind; one task runs at a time.

@@ -10,6 +10,7 @@
 #include "inspector/jobs/background_benchmark.h"
 #include "inspector/jobs/background_duel.h"
 #include "inspector/jobs/background_report.h"
+#include "inspector/jobs/background_save.h"
 #include "inspector/jobs/case_export.h"
 
 namespace broadmark {
@@ -35,7 +36,8 @@ class Jobs {
              BackgroundBenchmark,  //
              BackgroundDuel,       //
              CaseExport,           //
-             BackgroundReport>
+             BackgroundReport,     //
+             BackgroundSave>
       jobs_;
   const std::vector<Job*> all_ =
       std::apply([](auto&... job) { return std::vector<Job*>{&job...}; }, jobs_);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "broadmark/error.h"
-#include "broadmark/recordings/recording.h"
 #include "run/export_case.h"
 
 namespace broadmark {
@@ -96,6 +95,7 @@ void Session::reportFinishedJobs() {
     if (!job->consumeFinished()) continue;
     const JobStatus status = job->status();
     if (!status.failure.empty()) notices.reportError(status.failure);
+    if (!status.file.empty()) notices.on_file_used(status.file);
     if (status.outcome.empty()) continue;
     notices.setStatus(status.outcome, status.is_error ? Severity::error : Severity::note);
   }
@@ -113,12 +113,7 @@ void Session::play(bool on) {
 void Session::saveRecording(const fs::path& path) {
   notices.catchErrors([&] {
     if (!open_frames_) throw InputError("nothing is open");
-    const auto frames = open_frames_(available_frames_);
-    RecordingWriter writer(path, frames->scene());
-    recordAll(*frames, writer);
-    writer.finish();
-    notices.setStatus(fmt::format("recorded: {}", path.string()));
-    notices.on_file_used(path);
+    startSave(jobs.get<BackgroundSave>(), open_frames_(available_frames_), path);
   });
 }
 

@@ -48,7 +48,7 @@ class Session {
 
   /// Plays or pauses; playing a document at rest simulates it.
   void play(bool on);
-  /// Saves the available frames as a recording.
+  /// Starts to save the available frames as a recording.
   void saveRecording(const std::filesystem::path& path);
   /// Where a case fails.
   struct FailingFrame {
