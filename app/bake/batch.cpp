@@ -58,14 +58,18 @@ class Batch {
            const std::function<bool(const BatchState&)>& progress) {
     constexpr std::chrono::milliseconds kPollInterval{20};
     while (std::cmp_less(threads_.size(), threads) && threads_.size() < queue_.size()) {
-      threads_.push_back(std::async(std::launch::async, [this] { work(); }));
+      // Deferred, to get(), if the system grants no more threads.
+      threads_.push_back(
+          std::async(std::launch::async | std::launch::deferred, [this] { work(); }));
     }
+    const auto report = [&] {
+      for (const BakedJob& job : takeFinished()) on_finished(job);
+      if (!progress(state())) stopping_ = true;
+    };
     for (std::future<void>& thread : threads_) {
-      for (bool is_ready = false; !is_ready;) {
-        is_ready = thread.wait_for(kPollInterval) == std::future_status::ready;
-        for (const BakedJob& job : takeFinished()) on_finished(job);
-        if (!progress(state())) stopping_ = true;
-      }
+      while (thread.wait_for(kPollInterval) == std::future_status::timeout) report();
+      thread.wait();
+      report();
       thread.get();
     }
   }

@@ -33,6 +33,7 @@ constexpr double kOffscreenSeconds = 1.0 / 60;
 constexpr double kIdleSeconds = 0.25;
 /// Minimum time between two pictures.
 constexpr double kPictureSeconds = 1.0 / 60;
+constexpr std::chrono::milliseconds kWorkPerPicture{10};  ///< of the algorithms, without a thread
 
 /// A running script, which may be untrusted: only files below the current folder may be written.
 struct Script {
@@ -189,6 +190,7 @@ class InspectorWindow {
       script_->player.update(*inspector_, window_.input());
       if (script_->player.done()) script_.reset();
     }
+    inspector_->session().runs.proceed(kWorkPerPicture);
     if (window_.width() < 1 || window_.height() < 1) return;  // minimised
     last_draw_ = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(last_draw_ - now).count() + seconds;

@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "support/granted_thread.h"
 
 namespace broadmark {
 
@@ -103,7 +105,8 @@ class Task final : public Job {
   }
 
   /// Starts `work()` with the report `initial`. `work` polls cancelled(), and returns whether it
-  /// completed; its exceptions become the failure. Throws InputError while earlier work is running.
+  /// completed; its exceptions become the failure. Returns only when it has ended if the system
+  /// grants no thread. Throws InputError while earlier work is running.
   template <class Work>
   void start(Report initial, Work work) {
     if (running()) {
@@ -115,7 +118,9 @@ class Task final : public Job {
     finished_ = false;
     initial.state = TaskState::running;
     update([&](Report& report) { report = std::move(initial); });
-    thread_ = std::thread([this, work = std::move(work)]() mutable { perform(work); });
+    const auto shared_work = std::make_shared<Work>(std::move(work));
+    thread_ = grantedThread([this, shared_work] { perform(*shared_work); });
+    if (!thread_.joinable()) perform(*shared_work);
   }
   /// Changes the report under its lock.
   template <class Change>

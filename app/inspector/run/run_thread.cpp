@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "support/granted_thread.h"
 #include "support/words.h"
 
 namespace broadmark {
@@ -43,7 +44,7 @@ RunThread::RunThread(ExecutorFactory make_executor, SimulationHost host)
       host_(std::move(host)),
       oracle_(makeOracle()),
       second_oracle_(makeOracle()),
-      thread_([this] { loop(); }) {}
+      thread_(grantedThread([this] { loop(); })) {}
 
 Oracle RunThread::makeOracle() {
   return Oracle(std::size_t{256} << 20, kMaxPairs, [this] { return isSourceCancelled(); });
@@ -55,7 +56,7 @@ RunThread::~RunThread() {
     stopping_ = true;
   }
   changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void RunThread::request(ViewRequest request) {
@@ -78,38 +79,56 @@ void RunThread::readProgress(const std::function<void(const RunProgress&)>& visi
 
 bool RunThread::isIdle() {
   const std::lock_guard lock(mutex_);
-  return idle_ && applied_ == posted_;
+  return isDone();
 }
 
 bool RunThread::waitUntilIdle(std::chrono::milliseconds timeout) {
+  if (!thread_.joinable()) {
+    proceed(timeout);
+    return isIdle();
+  }
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, timeout, [this] { return idle_ && applied_ == posted_; });
+  return changed_.wait_for(lock, timeout, [this] { return isDone(); });
+}
+
+void RunThread::proceed(std::chrono::milliseconds budget) {
+  if (thread_.joinable()) return;
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_lock lock(mutex_);
+  do {
+    work(lock);
+  } while (!isDone() && std::chrono::steady_clock::now() - start < budget);
 }
 
 void RunThread::loop() {
   std::unique_lock lock(mutex_);
-  while (true) {
-    if (stopping_) return;
-    if (applied_ != posted_) applyRequest();
-    if (idle_) {
-      changed_.wait(lock, [this] { return stopping_ || applied_ != posted_; });
-      continue;
+  while (!stopping_) {
+    if (isDone()) {
+      changed_.wait(lock, [this] { return stopping_ || !isDone(); });
+    } else {
+      work(lock);
     }
-    lock.unlock();
-    bool more = false;
-    try {
-      more = step();
-    } catch (const Cancelled&) {
-      more = true;  // by a new request
-    } catch (const std::exception& error) {
-      publishFailure(error.what());
-    }
-    lock.lock();
-    if (more || applied_ != posted_) continue;
-    idle_ = true;
-    progress_.activity.clear();
-    changed_.notify_all();
   }
+}
+
+/// Executes a step of the latest request. Requires mutex_, and returns with it.
+void RunThread::work(std::unique_lock<std::mutex>& lock) {
+  if (applied_ != posted_) applyRequest();
+  if (idle_) return;
+  lock.unlock();
+  bool more = false;
+  try {
+    more = step();
+  } catch (const Cancelled&) {
+    more = true;  // by a new request
+  } catch (const std::exception& error) {
+    publishFailure(error.what());
+  }
+  lock.lock();
+  if (more || applied_ != posted_) return;
+  idle_ = true;
+  progress_.activity.clear();
+  changed_.notify_all();
 }
 
 /// Requires mutex_.

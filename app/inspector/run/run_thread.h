@@ -5,6 +5,8 @@
 // stateful, so each runs all frames from the first: for an earlier frame a new instance starts
 // over. Answers of shown frames are cached: such a frame is shown at once, and algorithms run again
 // only for answers that the cache does not hold.
+//
+// Where the system grants no thread, the interface calls proceed(), which executes some steps.
 #pragma once
 
 #include <chrono>
@@ -105,11 +107,15 @@ class RunThread {
   [[nodiscard]] bool isIdle();
   /// Waits until isIdle(); returns false after `timeout`.
   bool waitUntilIdle(std::chrono::milliseconds timeout);
+  /// Without a thread: works until isIdle() or for `budget`, at least a step. Call once per
+  /// picture.
+  void proceed(std::chrono::milliseconds budget);
 
   DrawGate& drawGate() { return draw_gate_; }
 
  private:
   void loop();
+  void work(std::unique_lock<std::mutex>& lock);
   void applyRequest();
   bool step();
   Oracle makeOracle();
@@ -135,6 +141,8 @@ class RunThread {
   [[nodiscard]] bool isTrackCancelled(const TrackSpec& spec);
   /// Whether the latest request no longer needs the second view's instance.
   [[nodiscard]] bool isSecondTrackCancelled(const TrackSpec& spec);
+  /// Whether the latest request has been completed. Requires mutex_.
+  [[nodiscard]] bool isDone() const { return idle_ && applied_ == posted_; }
   [[nodiscard]] std::uint32_t target() const;
   /// Returns the track with this number, or null.
   [[nodiscard]] AlgorithmTrack* findTrack(int number) const;
