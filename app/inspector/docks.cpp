@@ -13,10 +13,17 @@ namespace broadmark {
 namespace {
 
 constexpr float kMinAreaExtent = 110;  // units: of a visible dock area
+constexpr float kNarrow = 560;         // units: a window of this width has no room at the sides
 
 }  // namespace
 
+bool Inspector::isNarrow() const {
+  const float width = ImGui::GetIO().DisplaySize.x;
+  return width > 0 && width < kNarrow * ui_.scale;  // unknown before the first picture
+}
+
 DockArea Inspector::areaOf(const PanelTab& panel) const {
+  if (isNarrow()) return DockArea::bottom;
   const auto moved = preferences_.areas.find(panel.name);
   if (moved == preferences_.areas.end()) return panel.area;
   return kDockAreas.find(moved->second).value_or(panel.area);
@@ -99,7 +106,8 @@ Inspector::Layout Inspector::layout(float width, float top, float bottom) const 
   };
   return {.left = extent(DockArea::left, preferences_.left, 0.30F * width),
           .right = extent(DockArea::right, preferences_.right, 0.30F * width),
-          .bottom = extent(DockArea::bottom, preferences_.bottom, 0.40F * (bottom - top))};
+          .bottom = extent(DockArea::bottom, preferences_.bottom,
+                           (isNarrow() ? 0.60F : 0.40F) * (bottom - top))};
 }
 
 void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign) {
@@ -167,7 +175,8 @@ void Inspector::drawTabMenu(const PanelTab& panel) {
   if (ui_.menuItem("Hide")) setHidden(panel, true);
   for (const auto& [area, name] : kDockAreas.entries) {
     const std::string label = "Move to the " + std::string(name);
-    if (ui_.menuItem(label.c_str(), nullptr, false, areaOf(panel) != area)) movePanel(panel, area);
+    const bool movable = !isNarrow() && areaOf(panel) != area;
+    if (ui_.menuItem(label.c_str(), nullptr, false, movable)) movePanel(panel, area);
   }
   ImGui::EndPopup();
 }

@@ -131,6 +131,8 @@ class Inspector {
   void askMovie();
 
   // Docked panels: see docks.cpp.
+  /// Whether all panels are at the bottom: a phone's window.
+  [[nodiscard]] bool isNarrow() const;
   [[nodiscard]] DockArea areaOf(const PanelTab& panel) const;
   [[nodiscard]] bool isHidden(const PanelTab& panel) const;
   void setHidden(const PanelTab& panel, bool hidden);

@@ -150,6 +150,28 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
   EXPECT_NE(inspector.ui().find("Scene/Simulate"), nullptr);
 }
 
+TEST_F(InspectorTest, APhoneHasItsPanelsBelowTheView) {
+  inspector.session().draft.simulate();
+  waitUntilIdle();
+  const auto top_left_of = [&](const char* panel) {
+    inspector.session().notices.raisePanel(panel);
+    draw(3);
+    const WidgetPlace* const place = inspector.ui().find(panel);
+    return place == nullptr ? ImVec2{-1, -1} : place->min;
+  };
+  ASSERT_LT(top_left_of("Scene").y, 50);
+  for (const bool narrow : {true, false}) {
+    width = narrow ? 390 : 960;
+    height = narrow ? 844 : 600;
+    draw(3);
+    for (const char* panel : {"Scene", "Mismatches"}) {
+      const ImVec2 at = top_left_of(panel);
+      EXPECT_EQ(at.y > 400, narrow) << panel;
+      if (narrow) EXPECT_LT(at.x, 390) << panel;
+    }
+  }
+}
+
 TEST_F(InspectorTest, LooksAsItDid) {
   if (!hasGoldenLetters()) GTEST_SKIP() << "the golden pictures have other letters";
   inspector.session().draft.choose("brownian");
