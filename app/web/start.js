@@ -1,6 +1,7 @@
 // What the program finds when it starts: in a browser the page's canvas, and the arguments of the
 // address: page.html#ARGUMENT&ARGUMENT…; in node the current folder.
-if (ENVIRONMENT_IS_NODE && !ENVIRONMENT_IS_PTHREAD) {
+const isThread = typeof ENVIRONMENT_IS_PTHREAD !== "undefined" && ENVIRONMENT_IS_PTHREAD;
+if (ENVIRONMENT_IS_NODE && !isThread) {
   Module.preRun = () => {
     FS.mkdir("/here");
     FS.mount(NODEFS, { root: "." }, "/here");

@@ -18,6 +18,7 @@ from selenium.webdriver.support.wait import WebDriverWait
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SITE = pathlib.Path(os.environ.get("BROADMARK_SITE", ROOT / "build/web/site"))
+REMOTE = "broadmark.test"  # another host's pages have no threads without https
 PATIENCE = 120  # seconds; a software renderer draws
 
 
@@ -27,7 +28,7 @@ class QuietHandler(http.server.SimpleHTTPRequestHandler):
 
 
 class Page:
-    def __init__(self, address, width, height, touch=False):
+    def __init__(self, address, width, height, touch=False, vectors=True):
         options = webdriver.ChromeOptions()
         for argument in (
             "--headless=new",
@@ -35,6 +36,7 @@ class Page:
             "--use-gl=angle",
             "--use-angle=swiftshader",
             "--enable-unsafe-swiftshader",
+            f"--host-resolver-rules=MAP {REMOTE} 127.0.0.1",
         ):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
@@ -44,6 +46,11 @@ class Page:
         self.driver = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
         if not touch:
             self.driver.set_window_size(width, height)
+        if not vectors:
+            self.driver.execute_cdp_cmd(
+                "Page.addScriptToEvaluateOnNewDocument",
+                {"source": "WebAssembly.validate = () => false"},
+            )
         self.touch = touch
         self.address = address
 

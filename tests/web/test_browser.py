@@ -1,6 +1,18 @@
 """The inspector in a browser."""
 
-from conftest import Page
+import pytest
+from conftest import REMOTE, Page
+
+
+@pytest.fixture(params=["no threads", "no vectors"])
+def plain_page(request, address):
+    """A page on which the program runs on one thread, with scalar code."""
+    if request.param == "no threads":
+        opened = Page(address.replace("127.0.0.1", REMOTE), 1280, 800)
+    else:
+        opened = Page(address, 1280, 800, vectors=False)
+    yield opened
+    opened.driver.quit()
 
 
 def test_finds_the_planted_fault(page):
@@ -72,6 +84,31 @@ def test_a_dropped_recording_opens(page):
 def test_a_bad_address_is_explained(page):
     page.driver.get(page.address + "index.html#--no-such-option")
     page.wait("document.getElementById('message').innerText.includes('--no-such-option')")
+
+
+def test_without_threads_or_vectors_the_plain_program_runs(plain_page):
+    page = plain_page
+    page.open(["freefall", "--objects", "300", "--algorithm", "columns,tide", "--frame", "12"])
+    page.until("shown_frame", lambda frame: frame == "12")
+    assert page.value("missed") == "0"
+    assert page.value("algorithm.columns.isa") == "scalar"
+    assert "one thread" in page.driver.find_element("id", "limits").text
+    page.press("Playback/Play")
+    page.until("shown_frame", lambda frame: int(frame) > 30)
+    page.press("Playback/Play")
+    page.press("Duel")
+    page.press("Duel/Start")
+    page.until("duel.state", lambda state: state == "done")
+    assert page.value("duel.verdict") != ""
+    assert page.complaints() == []
+
+
+def test_the_plain_program_finds_the_planted_fault(plain_page):
+    plain_page.open()
+    plain_page.press("Start/Find the bug")
+    plain_page.until("missed", lambda missed: missed == "1")
+    assert "c-sweep is wrong" in plain_page.value("status")
+    assert plain_page.complaints() == []
 
 
 def test_preferences_outlive_the_page(page):

@@ -29,9 +29,11 @@ def pairs_of(table):
     sorted(path for path in CASES.rglob("*") if path.suffix in (".aabbs", ".broadmark")),
     ids=lambda path: path.stem,
 )
-@pytest.mark.parametrize("isa", ["simd128", "scalar"])
-def test_every_algorithm_is_right(recording, isa, tmp_path):
-    command = ["node", str(SITE / "broadmark.js"), "--headless", "scene" + recording.suffix]
+@pytest.mark.parametrize(
+    "program, isa", [("broadmark", "simd128"), ("broadmark", "scalar"), ("plain", "scalar")]
+)
+def test_every_algorithm_is_right(recording, program, isa, tmp_path):
+    command = ["node", str(SITE / f"{program}.js"), "--headless", "scene" + recording.suffix]
     command += ["--algorithm", "all", "--isa", isa, "--check", "full", "--quiet", "--allow-timeout"]
     (tmp_path / command[3]).write_bytes(recording.read_bytes())
     command += ["--csv-frames", "frames.csv"]

@@ -14,8 +14,8 @@ function browserName() {
   return `${name === "Version" ? "Safari" : name} ${version}`.trim();
 }
 
-// Runs the program. Resolves to its results.
-function measured(words) {
+// Runs the program with these arguments. Resolves to its results.
+function measured(program, words) {
   return new Promise((resolve, reject) => {
     const worker = new Worker("run.js");
     worker.onmessage = ({ data }) => {
@@ -26,7 +26,7 @@ function measured(words) {
       else reject(new Error(data.error || `the program ended with status ${data.status}`));
     };
     worker.onerror = (event) => reject(new Error(event.message));
-    worker.postMessage(words);
+    worker.postMessage({ program, words });
   });
 }
 
@@ -47,11 +47,11 @@ async function textOf(address) {
   return response.text();
 }
 
-async function run() {
+async function run(program) {
   byId("run").disabled = true;
   try {
     const [report, words] = await Promise.all([textOf("published.html"), textOf("arguments.txt")]);
-    const results = named(await measured(words.trim().split(/\s+/)));
+    const results = named(await measured(program, words.trim().split(/\s+/)));
     byId("report").srcdoc = withCases(report, results);
     byId("report").hidden = false;
     say(`Done: ${results.cases.filter(({ status }) => status === "ok").length} of ${results.cases.length} cases are right.`);
@@ -70,7 +70,7 @@ async function run() {
   byId("run").disabled = false;
 }
 
-whenIsolated(() => byId("run").addEventListener("click", run), (why) => {
+withProgram((program, why) => {
   say(why);
-  byId("run").disabled = true;
+  byId("run").addEventListener("click", () => run(program));
 });

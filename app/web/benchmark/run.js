@@ -1,10 +1,10 @@
-// A worker that runs the program once, with the arguments of its first message.
+// A worker that runs a program once, with the arguments of its first message.
 onmessage = ({ data }) => {
   const output = [];
   let error = "";
   self.Module = {
-    arguments: data,
-    mainScriptUrlOrBlob: "broadmark.js",  // threads load the program, not this file
+    arguments: data.words,
+    mainScriptUrlOrBlob: data.program,  // threads load the program, not this file
     print: (line) => output.push(line),
     printErr: (line) => {
       const text = line.split("\r").pop().trim();
@@ -14,5 +14,5 @@ onmessage = ({ data }) => {
     onExit: (status) => postMessage({ status, output: output.join("\n"), error }),
     onAbort: (reason) => postMessage({ status: -1, error: String(reason) }),
   };
-  importScripts("broadmark.js");
+  importScripts(data.program);
 };
