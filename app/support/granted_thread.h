@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-/// Starts `work` in a thread. Returns one that is not joinable if the system grants none; then the
-/// caller works itself.
+/// Starts `work` in a thread, which is not joinable if the system grants none: then the caller
+/// works itself.
 template <class Work>
 std::thread grantedThread(Work work) {
   try {
