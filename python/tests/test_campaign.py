@@ -36,6 +36,7 @@ def write(tmp_path: pathlib.Path) -> Callable[..., pathlib.Path]:
             "schema": "broadmark-campaign/1",
             "recordings": [BLOCK],
             "algorithm": ["bf", "kd"],
+            "time_limit": 60,  # no case ends early on a busy machine
         }
         path = tmp_path / "some campaign.json"
         path.write_text(json.dumps(document | keys))
