@@ -54,7 +54,10 @@ MeshTopology readMesh(const fs::path& file, const ReadingOptions& options, const
 MeshSequence::MeshSequence(const std::vector<fs::path>& files, const ReadingOptions& options,
                            ImportSummary& summary)
     : vertex_file_(unnamedFile()) {
-  for (const fs::path& file : files) readFile(file, options, summary);
+  for (std::size_t file = 0; file < files.size(); ++file) {
+    options.report(static_cast<double>(file) / static_cast<double>(files.size()));
+    readFile(files[file], options, summary);
+  }
 }
 
 void MeshSequence::readFile(const fs::path& file, const ReadingOptions& options,

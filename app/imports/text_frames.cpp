@@ -31,12 +31,12 @@ double radiusOf(const LineReader& lines, const std::vector<std::string_view>& wo
 class TextFrames final : public IndexedFrames {
  public:
   TextFrames(const std::vector<std::filesystem::path>& files, std::unique_ptr<TextFormat> format,
-             std::string object_type, ImportSummary& summary)
+             std::string object_type, const ReadingOptions& options, ImportSummary& summary)
       : files_(files), format_(std::move(format)) {
     scene_.name = sequenceName(files);
     scene_.object_type = std::move(object_type);
     scene_.world = kEmptyBox;
-    for (std::size_t file = 0; file < files.size(); ++file) scan(file);
+    for (std::size_t file = 0; file < files.size(); ++file) scan(file, options);
     if (isEmpty(scene_.world)) scene_.world = {};
     scene_.objects = static_cast<std::uint32_t>(ids_.size());
     scene_.frames = static_cast<std::uint32_t>(locations_.size() - 1);
@@ -56,8 +56,11 @@ class TextFrames final : public IndexedFrames {
     bool empty = false;  ///< skipped frame number: all bodies are absent
   };
 
-  void scan(std::size_t file) {
+  void scan(std::size_t file, const ReadingOptions& options) {
     LineReader lines(files_[file]);
+    lines.watch([&](double fraction) {
+      options.report((static_cast<double>(file) + fraction) / static_cast<double>(files_.size()));
+    });
     format_->start(lines);
     const std::size_t before = locations_.size();
     while (true) {
@@ -241,8 +244,11 @@ void TextFormat::setPeriodic(const LineReader& lines, const Cell& cell,
 
 std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
                                               std::unique_ptr<TextFormat> format,
-                                              std::string object_type, ImportSummary& summary) {
-  return std::make_unique<TextFrames>(files, std::move(format), std::move(object_type), summary);
+                                              std::string object_type,
+                                              const ReadingOptions& options,
+                                              ImportSummary& summary) {
+  return std::make_unique<TextFrames>(files, std::move(format), std::move(object_type), options,
+                                      summary);
 }
 
 Aabb boxAround(const LineReader& lines, const std::array<double, 3>& centre,

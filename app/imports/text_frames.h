@@ -13,6 +13,7 @@
 
 #include "broadmark/frame.h"
 #include "imports/import_summary.h"
+#include "request/reading_options.h"
 #include "support/line_reader.h"
 
 namespace broadmark::imports {
@@ -73,10 +74,11 @@ class TextFormat {
 };
 
 /// Opens the frames of all files, concatenated. Bodies are numbered by ascending id over all files;
-/// a body without a row is absent in that frame. Throws InputError.
+/// a body without a row is absent in that frame. Throws InputError, and Cancelled.
 std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
                                               std::unique_ptr<TextFormat> format,
-                                              std::string object_type, ImportSummary&);
+                                              std::string object_type, const ReadingOptions&,
+                                              ImportSummary&);
 
 /// The box that contains all points within `half` of the centre, along each axis, rounded outward.
 /// Throws InputError if 32-bit floats cannot represent it.

@@ -151,6 +151,10 @@ void Inspector::drawStatus(const RunProgress& progress) {
     ui_.faint("Nothing is open: simulate a scene, or open or drop a file");
   }
   if (!progress.activity.empty()) drawWork(ui_, progress.fraction, progress.activity);
+  BackgroundReading& read = session_.jobs.get<BackgroundReading>();
+  if (const ReadingReport reading = read.report(); reading.state == TaskState::running) {
+    drawWork(ui_, reading.fraction, "reading " + reading.file.filename().string(), &read);
+  }
   BackgroundSave& save = session_.jobs.get<BackgroundSave>();
   if (const SaveReport saving = save.report(); saving.state == TaskState::running) {
     drawWork(ui_, saving.fraction, "saving " + saving.file.filename().string(), &save);

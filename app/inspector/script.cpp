@@ -346,7 +346,8 @@ void ScriptPlayer::wait(const Words& words, Inspector&) {
   int pictures = 0;
   steps_.push_back([this, start, pictures](Inspector& inspector, InputQueue&) mutable {
     if (secondsSince(start) > 10 * kTimeout) fail("still computing");
-    return ++pictures > 2 && inspector.session().runs.isIdle();
+    Session& session = inspector.session();
+    return ++pictures > 2 && !session.isReading() && session.runs.isIdle();
   });
 }
 

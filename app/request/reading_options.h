@@ -1,8 +1,10 @@
 // Options for reading the files of a source.
 #pragma once
 
+#include <functional>
 #include <string>
 
+#include "broadmark/error.h"
 #include "broadmark/parameters.h"
 #include "broadmark/recordings/periodic_frames.h"
 #include "broadmark/recordings/widened_frames.h"
@@ -22,6 +24,14 @@ struct ReadingOptions : Parametrised {
   double radius = 0;
   double frame_rate = 30;
   std::string animation;
+  /// Called while imported files are read, with the completed fraction; returns false to cancel.
+  /// No option.
+  std::function<bool(double fraction)> progress = {};
+
+  /// Calls `progress`. Throws Cancelled.
+  void report(double fraction) const {
+    if (progress && !progress(fraction)) throw Cancelled();
+  }
 
   void visitParameters(const ParameterVisitor& visit) override {
     constexpr double kMaxRadius = 1e30;

@@ -401,9 +401,10 @@ bool recognises(const imports::FileStart& start) {
 }
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
-                                    const ReadingOptions&, imports::ImportSummary& summary) {
+                                    const ReadingOptions& options,
+                                    imports::ImportSummary& summary) {
   summary.format = "CSV";
-  return imports::openTextFrames(files, std::make_unique<CsvFormat>(), "Boxes", summary);
+  return imports::openTextFrames(files, std::make_unique<CsvFormat>(), "Boxes", options, summary);
 }
 
 }  // namespace

@@ -272,7 +272,7 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
                                     const ReadingOptions& options,
                                     imports::ImportSummary& summary) {
   summary.format = "LAMMPS dump";
-  return imports::openTextFrames(files, std::make_unique<DumpFormat>(options), "Particles",
+  return imports::openTextFrames(files, std::make_unique<DumpFormat>(options), "Particles", options,
                                  summary);
 }
 

@@ -20,7 +20,8 @@ namespace {
 
 class NumpyFrames final : public IndexedFrames {
  public:
-  NumpyFrames(const std::vector<std::filesystem::path>& files, imports::ImportSummary& summary) {
+  NumpyFrames(const std::vector<std::filesystem::path>& files, const ReadingOptions& options,
+              imports::ImportSummary& summary) {
     scene_.name = imports::sequenceName(files);
     scene_.object_type = "Boxes";
     scene_.world = kEmptyBox;
@@ -43,6 +44,7 @@ class NumpyFrames final : public IndexedFrames {
     boxes_.resize(scene_.objects);
     // The world, and whether all are valid.
     for (std::uint32_t frame = 0; frame < frames && scene_.objects > 0; ++frame) {
+      options.report(static_cast<double>(frame) / static_cast<double>(frames));
       for (const Aabb& box : readBoxes(frame)) {
         if (box == kEmptyBox) scene_.all_present = false;
         scene_.world = merged(scene_.world, box);
@@ -71,9 +73,10 @@ bool recognises(const imports::FileStart& start) {
 }
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
-                                    const ReadingOptions&, imports::ImportSummary& summary) {
+                                    const ReadingOptions& options,
+                                    imports::ImportSummary& summary) {
   summary.format = "NumPy";
-  return std::make_unique<NumpyFrames>(files, summary);
+  return std::make_unique<NumpyFrames>(files, options, summary);
 }
 
 }  // namespace

@@ -254,7 +254,8 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
                                     const ReadingOptions& options,
                                     imports::ImportSummary& summary) {
   summary.format = "XYZ";
-  return imports::openTextFrames(files, std::make_unique<XyzFormat>(options), "Particles", summary);
+  return imports::openTextFrames(files, std::make_unique<XyzFormat>(options), "Particles", options,
+                                 summary);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <locale.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -52,6 +53,13 @@ LineReader::LineReader(const std::filesystem::path& path)
   if (!has_lf && start.find('\r') != std::string_view::npos) line_end_ = '\r';
 }
 
+void LineReader::watch(std::function<void(double fraction)> on_read) {
+  struct stat status = {};
+  ::fstat(file_.get(), &status);
+  size_ = static_cast<double>(std::max<off_t>(status.st_size, 1));
+  on_read_ = std::move(on_read);
+}
+
 bool LineReader::fill(std::size_t begin) {
   if (begin > 0) {
     std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -67,6 +75,7 @@ bool LineReader::fill(std::size_t begin) {
     throw InputError(fmt::format("{}: cannot read: {}", path_, std::strerror(errno)));
   }
   filled_ += got;
+  if (on_read_) on_read_(static_cast<double>(buffer_begin_ + filled_) / size_);
   return got > 0;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,9 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 class LineReader {
  public:
   explicit LineReader(const std::filesystem::path& path);
+
+  /// Calls `on_read` whenever more of the file is read, with the completed fraction.
+  void watch(std::function<void(double fraction)> on_read);
 
   /// Reads the next line, without its end: LF, CR LF or CR. Returns false at the end of the file.
   bool next();
@@ -56,6 +60,8 @@ class LineReader {
 
   std::string path_;
   FileDescriptor file_;
+  std::function<void(double fraction)> on_read_;
+  double size_ = 1;  ///< of the file in bytes, if it is watched
   char line_end_ = '\n';
   std::string buffer_;  ///< the first `filled_` bytes are of the file
   std::size_t filled_ = 0;

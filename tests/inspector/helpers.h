@@ -35,6 +35,7 @@ inline constexpr std::chrono::hours kForever{24};
 inline RunProgress waitUntilIdle(Session& session) {
   RunProgress seen;
   for (int picture = 0; picture < 4; ++picture) {
+    session.jobs.get<BackgroundReading>().wait();
     session.postRequest();
     EXPECT_TRUE(session.runs.waitUntilIdle(kForever));
     session.runs.readProgress([&](const RunProgress& progress) {

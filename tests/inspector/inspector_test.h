@@ -57,6 +57,7 @@ class InspectorTest : public testing::Test {
   /// Draws until the queue is empty and the session is idle.
   void waitUntilIdle() {
     for (int i = 0; i < 400; ++i) {
+      inspector.session().jobs.get<BackgroundReading>().wait();
       draw();
       inspector.session().runs.waitUntilIdle(kForever);
       if (i > 2 && input.empty()) return;

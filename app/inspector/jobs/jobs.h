@@ -9,6 +9,7 @@
 #include "inspector/jobs/background_bake.h"
 #include "inspector/jobs/background_benchmark.h"
 #include "inspector/jobs/background_duel.h"
+#include "inspector/jobs/background_reading.h"
 #include "inspector/jobs/background_report.h"
 #include "inspector/jobs/background_save.h"
 #include "inspector/jobs/case_export.h"
@@ -36,6 +37,7 @@ class Jobs {
              BackgroundBenchmark,  //
              BackgroundDuel,       //
              CaseExport,           //
+             BackgroundReading,    //
              BackgroundReport,     //
              BackgroundSave>
       jobs_;

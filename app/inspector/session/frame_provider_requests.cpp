@@ -61,16 +61,21 @@ FrameProviderRequest recordingSource(const fs::path& path, const std::string& ha
           .scene_parameters = parameters};
 }
 
-FrameProviderRequest importSource(const RecordingReference& reference, ParameterValues reading) {
-  const auto open = [reference, reading = std::move(reading)](
+FrameProviderRequest importSource(Source& source, ParameterValues reading) {
+  const RecordingReference& reference = source.reference;
+  // Consumed by the first opening; later ones read the files again.
+  const auto first = std::make_shared<std::unique_ptr<IndexedFrames>>(std::move(source.imported));
+  const auto open = [reference, first, reading = std::move(reading)](
                         const SimulationHost&,
-                        const CancelQuery&) -> std::unique_ptr<FrameProvider> {
+                        const CancelQuery& cancelled) -> std::unique_ptr<FrameProvider> {
+    if (*first) return std::make_unique<FrameProvider>(std::move(*first), reading);
     ReadingOptions options;
     setParameters(options, reference.reading);
+    options.progress = [&cancelled](double) { return !cancelled(); };
     const auto import = importOf(reference.path, options.format.value);
     if (!import) throw InputError(fmt::format("{}: no longer exists", reference.path));
-    Source source = importedSource({reference.path}, *import, options);
-    return std::make_unique<FrameProvider>(std::move(source.imported), reading);
+    Source again = importedSource({reference.path}, *import, options);
+    return std::make_unique<FrameProvider>(std::move(again.imported), reading);
   };
   return {.open = open,
           .origin = FrameOrigin::import,

@@ -11,6 +11,7 @@
 #include "broadmark/parameters.h"
 #include "broadmark/scenes/simulation.h"
 #include "inspector/session/playback.h"
+#include "sources/source.h"
 
 namespace broadmark {
 
@@ -21,8 +22,8 @@ FrameProviderRequest simulationSource(Simulation& simulation, ParameterValues re
 /// `hash`: expected hash; "": any. Throws InputError.
 FrameProviderRequest recordingSource(const std::filesystem::path& path, const std::string& hash,
                                      ParameterValues reading);
-/// Throws InputError.
-FrameProviderRequest importSource(const RecordingReference& reference, ParameterValues reading);
+/// Takes the frames of an imported source.
+FrameProviderRequest importSource(Source& source, ParameterValues reading);
 
 /// Returns the known parameters of the request's scene, including "scene"; none for null.
 ParameterValues sceneParametersOf(const FrameProviderRequest* source);

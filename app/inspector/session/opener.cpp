@@ -20,6 +20,12 @@ namespace fs = std::filesystem;
 void Session::open(const fs::path& path) {
   if (isLibraryFile(path)) return plugins.load(path);
   notices.catchErrors([&] {
+    if (auto import = importOf(path.string())) {
+      startReading(jobs.get<BackgroundReading>(), path, std::move(*import));
+      replaced_by_reading_ = playback.source();
+      reading_ = true;
+      return;
+    }
     OpenedSource opened = openSource(path.string(), {.algorithms = tracks.algorithms()});
     if (opened.results) {
       showResults(path, std::move(*opened.results));
@@ -27,6 +33,21 @@ void Session::open(const fs::path& path) {
       openEntry(std::move(opened.entries.at(0)), DocumentStart::at_rest);
     }
     notices.on_file_used(path);
+  });
+}
+
+void Session::showRead() {
+  BackgroundReading& job = jobs.get<BackgroundReading>();
+  if (!reading_) return;
+  if (playback.source() != replaced_by_reading_) job.cancel();  // another source has been opened
+  if (job.running()) return;
+  reading_ = false;
+  const ReadingReport report = job.report();
+  if (report.state != TaskState::done || playback.source() != replaced_by_reading_) return;
+  notices.catchErrors([&] {
+    PlanEntry entry;
+    entry.source = std::move(*report.source);
+    openEntry(std::move(entry), DocumentStart::at_rest);
   });
 }
 
@@ -109,7 +130,7 @@ void Session::loadSource(PlanEntry& entry, DocumentStart start) {
     draft.adopt(std::move(source.simulation));
     show(simulationSource(draft.scene(), playback.reading));
   } else if (source.imported) {
-    show(importSource(source.reference, playback.reading));
+    show(importSource(source, playback.reading));
     notices.on_file_used(source.reference.path);
   } else if (!source.reference.path.empty()) {
     show(recordingSource(source.reference.path, source.expected_hash, playback.reading));

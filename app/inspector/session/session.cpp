@@ -36,6 +36,7 @@ Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_executo
 
 void Session::advance(const RunProgress& progress, double seconds) {
   reportFinishedJobs();
+  showRead();
   available_frames_ = progress.available_frames;
   open_frames_ = progress.source == playback.source() ? progress.frames : nullptr;
   plugins.reloadRebuilt(progress);

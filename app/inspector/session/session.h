@@ -43,6 +43,8 @@ class Session {
   void postRequest();
   /// Whether playback, algorithms or jobs are running.
   [[nodiscard]] bool busy();
+  /// Whether a file is being read, to be shown.
+  [[nodiscard]] bool isReading() const { return reading_; }
   /// What the requested frame has been waiting for; "" if it has not for long.
   [[nodiscard]] std::string waitsFor(const RunProgress& progress) const;
 
@@ -105,11 +107,15 @@ class Session {
   void openEntry(PlanEntry entry, DocumentStart start);
   void loadEntry(PlanEntry& entry, DocumentStart start);
   void loadSource(PlanEntry& entry, DocumentStart start);
+  /// Shows the file that has been read, unless another source has been opened meanwhile.
+  void showRead();
   void showResults(const std::filesystem::path& file, Results listed);
   [[nodiscard]] ViewRequest request() const;
   void reportFailure(const RunProgress& progress);
   void reportFinishedJobs();
 
+  bool reading_ = false;  ///< a file is to be shown once it is read, instead of:
+  std::shared_ptr<const FrameProviderRequest> replaced_by_reading_;
   std::string reported_failure_;
   std::uint32_t available_frames_ = 0;
   FrameOpener open_frames_;  ///< opens the playback's frames; null: nothing is open
