@@ -58,7 +58,7 @@ class Batch {
            const std::function<bool(const BatchState&)>& progress) {
     constexpr std::chrono::milliseconds kPollInterval{20};
     while (std::cmp_less(threads_.size(), threads) && threads_.size() < queue_.size()) {
-      // Deferred, to get(), if the system grants no more threads.
+      // Deferred, to wait(), if the system grants no more threads.
       threads_.push_back(
           std::async(std::launch::async | std::launch::deferred, [this] { work(); }));
     }

@@ -24,7 +24,7 @@ void drawWork(Ui& ui, float fraction, const std::string& activity, Job* cancella
   ui.faint(activity);
   if (cancellable != nullptr) {
     ImGui::SameLine();
-    if (ui.button("Cancel", "Stop; nothing is written")) cancellable->cancel();
+    if (ui.button("Cancel", "Stop; nothing is changed")) cancellable->cancel();
   }
   ImGui::PopStyleVar();
 }
