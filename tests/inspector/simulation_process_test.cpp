@@ -118,10 +118,12 @@ TEST(SimulationProcess, ACrashOrAnExceptionIsAnError) {
 }
 
 TEST(SimulationProcess, AHangEndsWhenCancelled) {
+  std::atomic<bool> hangs = false;
   std::atomic<int> polls = 0;
-  const auto there = processes()(unruly("hang"), [&] { return ++polls > 5; });
+  const auto there = processes()(unruly("hang"), [&] { return hangs && ++polls > 5; });
   there->rewind();
   there->next();
+  hangs = true;
   EXPECT_THROW(there->next(), Cancelled);
 }
 
