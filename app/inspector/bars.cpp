@@ -29,6 +29,14 @@ void drawWork(Ui& ui, float fraction, const std::string& activity, Job* cancella
   ImGui::PopStyleVar();
 }
 
+/// Draws the progress of a job of a file while it runs: "saving some.aabbs".
+template <class JobType>
+void drawFileJob(Ui& ui, const char* what, JobType& job) {
+  const auto report = job.report();
+  if (report.state != TaskState::running) return;
+  drawWork(ui, report.fraction, fmt::format("{} {}", what, report.file.filename().string()), &job);
+}
+
 }  // namespace
 
 float Inspector::transportHeight(float width) const {
@@ -151,14 +159,8 @@ void Inspector::drawStatus(const RunProgress& progress) {
     ui_.faint("Nothing is open: simulate a scene, or open or drop a file");
   }
   if (!progress.activity.empty()) drawWork(ui_, progress.fraction, progress.activity);
-  BackgroundReading& read = session_.jobs.get<BackgroundReading>();
-  if (const ReadingReport reading = read.report(); reading.state == TaskState::running) {
-    drawWork(ui_, reading.fraction, "reading " + reading.file.filename().string(), &read);
-  }
-  BackgroundSave& save = session_.jobs.get<BackgroundSave>();
-  if (const SaveReport saving = save.report(); saving.state == TaskState::running) {
-    drawWork(ui_, saving.fraction, "saving " + saving.file.filename().string(), &save);
-  }
+  drawFileJob(ui_, "reading", session_.jobs.get<BackgroundReading>());
+  drawFileJob(ui_, "saving", session_.jobs.get<BackgroundSave>());
   const Message& message = session_.notices.status;
   if (message.text.empty()) return;
   const float right = ImGui::GetWindowContentRegionMax().x;

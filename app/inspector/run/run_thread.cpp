@@ -95,9 +95,10 @@ void RunThread::proceed(std::chrono::milliseconds budget) {
   if (thread_.joinable()) return;
   const auto start = std::chrono::steady_clock::now();
   std::unique_lock lock(mutex_);
-  do {
+  while (!isDone()) {
     work(lock);
-  } while (!isDone() && std::chrono::steady_clock::now() - start < budget);
+    if (std::chrono::steady_clock::now() - start >= budget) return;
+  }
 }
 
 void RunThread::loop() {
@@ -111,10 +112,9 @@ void RunThread::loop() {
   }
 }
 
-/// Executes a step of the latest request. Requires mutex_, and returns with it.
+/// Executes a step of the latest request, which is not done. Requires mutex_, and returns with it.
 void RunThread::work(std::unique_lock<std::mutex>& lock) {
   if (applied_ != posted_) applyRequest();
-  if (idle_) return;
   lock.unlock();
   bool more = false;
   try {

@@ -23,7 +23,6 @@ void Session::open(const fs::path& path) {
     if (auto import = importOf(path.string())) {
       startReading(jobs.get<BackgroundReading>(), path, std::move(*import));
       replaced_by_reading_ = playback.source();
-      reading_ = true;
       return;
     }
     OpenedSource opened = openSource(path.string(), {.algorithms = tracks.algorithms()});
@@ -37,13 +36,14 @@ void Session::open(const fs::path& path) {
 }
 
 void Session::showRead() {
+  if (!replaced_by_reading_) return;
   BackgroundReading& job = jobs.get<BackgroundReading>();
-  if (!reading_) return;
-  if (playback.source() != replaced_by_reading_) job.cancel();  // another source has been opened
+  const bool is_wanted = playback.source() == *replaced_by_reading_;
+  if (!is_wanted) job.cancel();
   if (job.running()) return;
-  reading_ = false;
+  replaced_by_reading_.reset();
   const ReadingReport report = job.report();
-  if (report.state != TaskState::done || playback.source() != replaced_by_reading_) return;
+  if (!is_wanted || report.state != TaskState::done) return;
   notices.catchErrors([&] {
     PlanEntry entry;
     entry.source = std::move(*report.source);

@@ -44,7 +44,7 @@ class Session {
   /// Whether playback, algorithms or jobs are running.
   [[nodiscard]] bool busy();
   /// Whether a file is being read, to be shown.
-  [[nodiscard]] bool isReading() const { return reading_; }
+  [[nodiscard]] bool isReading() const { return replaced_by_reading_.has_value(); }
   /// What the requested frame has been waiting for; "" if it has not for long.
   [[nodiscard]] std::string waitsFor(const RunProgress& progress) const;
 
@@ -114,8 +114,8 @@ class Session {
   void reportFailure(const RunProgress& progress);
   void reportFinishedJobs();
 
-  bool reading_ = false;  ///< a file is to be shown once it is read, instead of:
-  std::shared_ptr<const FrameProviderRequest> replaced_by_reading_;
+  /// The source that the file being read will replace; nothing: no file is being read.
+  std::optional<std::shared_ptr<const FrameProviderRequest>> replaced_by_reading_;
   std::string reported_failure_;
   std::uint32_t available_frames_ = 0;
   FrameOpener open_frames_;  ///< opens the playback's frames; null: nothing is open
