@@ -27,6 +27,7 @@ LayerMatrix& LayerMatrix::set(std::size_t a, std::size_t b, bool collide) {
 CollisionFilter::CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix,
                                  bool changes) {
   const auto data = std::make_shared<Data>();
+  data->bodies = bodies.size();
   data->changes = changes;
   data->matrix = matrix;
   const auto store = [&](auto BodyGroups::* member, auto default_value, auto& all) {
@@ -107,29 +108,45 @@ CollisionFilter CollisionFilter::with(std::span<const std::uint32_t> changed,
   return with(changed, groups, count);
 }
 
-/// Without branches on a pair's result, which cannot be predicted.
-std::size_t CollisionFilter::retainWanted(std::span<Pair> pairs) const {
-  if (data_ == nullptr) return pairs.size();
-  const Data& data = *data_;
-  if (data.layers.empty() && !data.matrix.collide(0, 0)) {
-    const auto dropped = std::ranges::remove_if(pairs, [](Pair pair) { return pair.a < pair.b; });
-    return pairs.size() - dropped.size();
-  }
-  const bool has_layers = !data.layers.empty();
-  const bool has_worlds = !data.worlds.empty();
-  const bool has_tags = !data.tags.empty();
+namespace {
+
+/// Keeps the wanted and the invalid pairs. Without branches on a pair's result, which cannot be
+/// predicted.
+template <class Wanted>
+std::size_t retain(std::span<Pair> pairs, std::size_t bodies, const Wanted& wanted) {
   std::size_t count = 0;
   for (const Pair pair : pairs) {
     pairs[count] = pair;
-    bool wanted = true;
-    if (pair.a < pair.b) [[likely]] {
-      if (has_layers) wanted &= data.matrix.collide(data.layers[pair.a], data.layers[pair.b]);
-      if (has_worlds) wanted &= data.worlds[pair.a] == data.worlds[pair.b];
-      if (has_tags) wanted &= !shareTag(data.tag_vectors[pair.a], data.tag_vectors[pair.b]);
-    }
-    count += wanted ? 1 : 0;
+    bool keep = true;
+    if (pair.a < pair.b && pair.b < bodies) [[likely]]
+      keep = wanted(pair);
+    count += keep ? 1 : 0;
   }
   return count;
+}
+
+}  // namespace
+
+std::size_t CollisionFilter::retainWanted(std::span<Pair> pairs) const {
+  if (data_ == nullptr) return pairs.size();
+  const Data& data = *data_;
+  const auto differ_in_tags = [&](Pair pair) {
+    return !shareTag(data.tag_vectors[pair.a], data.tag_vectors[pair.b]);
+  };
+  const bool layers_collide = data.matrix.collide(0, 0);  // where all are in the first
+  const bool has_layers = !data.layers.empty();
+  const bool has_worlds = !data.worlds.empty();
+  const bool has_tags = !data.tags.empty();
+  if (has_tags && !has_layers && !has_worlds && layers_collide) {  // meshes: made fast
+    return retain(pairs, data.bodies, differ_in_tags);
+  }
+  return retain(pairs, data.bodies, [&](Pair pair) {
+    bool wanted =
+        has_layers ? data.matrix.collide(data.layers[pair.a], data.layers[pair.b]) : layers_collide;
+    if (has_worlds) wanted &= data.worlds[pair.a] == data.worlds[pair.b];
+    if (has_tags) wanted &= differ_in_tags(pair);
+    return wanted;
+  });
 }
 
 bool operator==(const CollisionFilter& a, const CollisionFilter& b) {
@@ -141,6 +158,7 @@ bool operator==(const CollisionFilter& a, const CollisionFilter& b) {
 
 LiveFilter::LiveFilter(const CollisionFilter& first, std::size_t bodies)
     : data_(std::make_shared<CollisionFilter::Data>()) {
+  data_->bodies = bodies;
   data_->matrix = first.matrix();
   data_->worlds.assign(first.worlds().begin(), first.worlds().end());
   data_->layers.resize(bodies);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <random>
 #include <set>
 #include <span>
 #include <utility>
@@ -136,6 +137,24 @@ TEST(CompactingAdapter, ShowsOfALevelOnlyWhatIsNearSomebody) {
   boxes.back() = kEmptyBox;
   adapted.step(boxes);
   EXPECT_TRUE(adapted.shown().empty());
+}
+
+TEST(CompactingAdapter, MapsPairsOfBodiesInAnyOrder) {
+  constexpr std::size_t kBodies = 5;  // all of them overlap
+  std::vector<BodyGroups> groups(kBodies);
+  groups[1].tags = groups[3].tags = {7, BodyGroups::kNoTag, BodyGroups::kNoTag};
+  const Boxes all(kBodies, unitAt(0));
+  AdaptedWorld adapted(CollisionFilter(groups, LayerMatrix::all()), all, kBounds);
+  std::mt19937 random(1);
+  for (int step = 0; step < 200; ++step) {
+    Boxes boxes = all;
+    if (step % 3 != 0) {
+      for (Aabb& box : boxes) {
+        if (random() % 2 == 0) box = kEmptyBox;
+      }
+    }
+    adapted.step(boxes);
+  }
 }
 
 TEST(CompactingAdapter, FormsNoPairsOfTwoWorlds) {

@@ -86,9 +86,12 @@ class CompactingAdapter final : public Adapter, private PairMap {
     algorithm_->visitCounters(visit);
   }
   [[nodiscard]] std::string validate() const override {
+    std::size_t reordered = 0;
     for (std::size_t index = 0; index < bodies_.size(); ++index) {
       if (index_of_[bodies_[index]] != index) return "a body's index is wrong";
+      reordered += bodies_[index] != index ? 1 : 0;
     }
+    if (reordered != reordered_) return "the number of reordered bodies is wrong";
     return algorithm_->validate();
   }
 
@@ -214,6 +217,7 @@ class CompactingAdapter final : public Adapter, private PairMap {
       boxes_.emplace_back();
       if (worlds_->translates()) true_boxes_.emplace_back();
       bodies_.push_back(body);
+      reordered_ += bodies_.size() - 1 != body ? 1 : 0;
     }
     const std::uint32_t index = index_of_[body];
     boxes_[index] = worlds_->translates() ? worlds_->translated(body, box) : box;
@@ -225,7 +229,10 @@ class CompactingAdapter final : public Adapter, private PairMap {
   void remove(std::uint32_t index) {
     index_of_[bodies_[index]] = kAbsent;
     const std::uint32_t last = bodies_.back();
+    reordered_ -= last != bodies_.size() - 1 ? 1 : 0;
     if (last != bodies_[index]) {
+      reordered_ -= bodies_[index] != index ? 1 : 0;
+      reordered_ += last != index ? 1 : 0;
       bodies_[index] = last;
       boxes_[index] = boxes_.back();
       if (worlds_->translates()) true_boxes_[index] = true_boxes_.back();
@@ -238,10 +245,13 @@ class CompactingAdapter final : public Adapter, private PairMap {
   }
 
   [[nodiscard]] std::size_t map(std::span<Pair> pairs) const override {
-    const std::size_t mapped =
-        worlds_->translates()
-            ? mapInPlace(pairs, bodies_, [this](Pair indices) { return trueBoxesOverlap(indices); })
-            : mapInPlace(pairs, bodies_, [](Pair) { return true; });
+    std::size_t mapped = pairs.size();
+    if (worlds_->translates()) {
+      mapped =
+          mapInPlace(pairs, bodies_, [this](Pair indices) { return trueBoxesOverlap(indices); });
+    } else if (reordered_ > 0 || bodies_.size() < index_of_.size()) {
+      mapped = mapInPlace(pairs, bodies_, [](Pair) { return true; });
+    }
     return filter_.retainWanted(pairs.first(mapped));
   }
 
@@ -272,6 +282,7 @@ class CompactingAdapter final : public Adapter, private PairMap {
   std::vector<Aabb> true_boxes_;          ///< the same, untranslated; empty if no box is translated
   std::vector<std::uint32_t> bodies_;     ///< body id, by index
   std::vector<std::uint32_t> index_of_;   ///< index by body id; kAbsent: inactive
+  std::size_t reordered_ = 0;             ///< active bodies whose index is not their id
   std::vector<std::uint32_t> changed_;    ///< indices with changed boxes in this frame, ascending
   std::vector<std::uint8_t> is_changed_;  ///< by index, for sortChanged()
   MappedPairs pairs_;

@@ -69,8 +69,8 @@ class CollisionFilter {
   [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
     return data_ == nullptr || data_->wanted(a, b);
   }
-  /// Keeps the wanted pairs and the invalid ones (a >= b), in order, at the front, and returns
-  /// their number. Half the time of wanted() for each pair.
+  /// Keeps the wanted pairs and the invalid ones (a >= b, or without such a body), in order, at the
+  /// front, and returns their number. Half the time of wanted() for each pair.
   std::size_t retainWanted(std::span<Pair> pairs) const;
   /// Sufficient condition for all pairs to be wanted.
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
@@ -109,6 +109,7 @@ class CollisionFilter {
   }
 
   struct Data {
+    std::size_t bodies = 0;
     bool changes = false;
     LayerMatrix matrix;
     std::vector<std::uint8_t> layers;
