@@ -7,6 +7,7 @@ Each command is a module: its docstring is the help, `add_options(parser)` decla
 #: The commands in the order of the help.
 COMMANDS = [
     "read",
+    "table",
     "write",
     "report",
     "campaign",
