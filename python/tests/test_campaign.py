@@ -576,7 +576,7 @@ def test_the_campaigns_of_the_program_and_the_documents_are_valid(
     example = tmp_path / "example.json"
     example.write_text(document.split("```json\n")[1].split("```")[0])
     paths = [example, *sorted((SOURCE_FOLDER / "assets/campaigns").glob("*.json"))]
-    assert len(paths) == 5
+    assert len(paths) == 6
     for path in paths:
         status, out, err = command("campaign", path, "--output", tmp_path / "none", "--list")
         assert status == 0 and "to bake" in out, err
