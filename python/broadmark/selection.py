@@ -133,12 +133,15 @@ def require_unique(cases: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
 def best_variants(cases: pd.DataFrame) -> pd.DataFrame:
     """For each algorithm and recording, the case with the most threads; ties go to the widest
     instruction set."""
-    rank = cases["threads"] * len(ISAS) + cases["isa"].map(
-        lambda isa: ISAS.index(isa) if isa in ISAS else 0
-    )
     keys = [*RECORDING, "algorithm"]
-    best = rank.groupby([cases[column] for column in keys]).transform("max")
-    return require_unique(cases[rank == best], keys)
+    most = cases.groupby(keys)["threads"].transform("max")
+    return require_unique(widest(cases[cases["threads"] == most], keys), keys)
+
+
+def widest(cases: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+    """Of the cases that are equal in the columns `keys`, those with the widest instruction set."""
+    rank = cases["isa"].map(lambda isa: ISAS.index(isa) if isa in ISAS else 0)
+    return cases[rank == rank.groupby([cases[key] for key in keys]).transform("max")]
 
 
 def _quoted(names: list[str]) -> str:

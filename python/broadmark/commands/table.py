@@ -4,7 +4,8 @@
 
 Rows and columns are named as in `read --csv`. Times are in milliseconds, memory is in megabytes, all
 with three digits. A case without the number shows its status. Rows of algorithms are in
-ascending order of their number in the last column that they have one in. Self-checks are left out.
+ascending order of their number in the last column that they have one in. Self-checks are left out,
+and instruction sets narrower than the widest of a cell.
 """
 
 from __future__ import annotations
@@ -79,7 +80,10 @@ def main(options: argparse.Namespace) -> None:
 
 
 def _table(cases: pd.DataFrame, environment: dict[str, Any], options: argparse.Namespace) -> Table:
-    cases = selection.require_unique(cases, [*options.rows, *options.columns])
+    keys = [*options.rows, *options.columns]
+    if "isa" not in keys:
+        cases = selection.widest(cases, keys)
+    cases = selection.require_unique(cases, keys)
     columns = _in_order(_keys_of(cases, options.columns))
     cells: dict[Key, dict[Key, float | str]] = {}
     for row, column, number, status in zip(
