@@ -282,7 +282,7 @@ class CompactingAdapter final : public Adapter, private PairMap {
   std::vector<Aabb> true_boxes_;          ///< the same, untranslated; empty if no box is translated
   std::vector<std::uint32_t> bodies_;     ///< body id, by index
   std::vector<std::uint32_t> index_of_;   ///< index by body id; kAbsent: inactive
-  std::size_t reordered_ = 0;             ///< active bodies whose index is not their id
+  std::size_t reordered_ = 0;             ///< active bodies with another index than their id
   std::vector<std::uint32_t> changed_;    ///< indices with changed boxes in this frame, ascending
   std::vector<std::uint8_t> is_changed_;  ///< by index, for sortChanged()
   MappedPairs pairs_;
