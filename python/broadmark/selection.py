@@ -87,6 +87,16 @@ def add_case_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--objects", metavar="N[,N…]", help="only these numbers of bodies")
 
 
+def read_cases(options: argparse.Namespace) -> tuple[str, Results]:
+    """The name of the only machine, and its results selected by the options of `add_options` and
+    `add_case_options`. Raises InputError if no case is left or there are several machines."""
+    machine, results = single_machine(read_selected(options))
+    results = results.select(match_cases(results.cases, options))
+    if not len(results.cases):
+        raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
+    return machine, results
+
+
 def match_cases(cases: pd.DataFrame, options: argparse.Namespace) -> pd.Series:
     """A mask of the cases selected by the options of `add_case_options`."""
     mask = pd.Series(True, cases.index)

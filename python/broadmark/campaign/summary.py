@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.plan import Recording
+from broadmark.text_tables import aligned
 
 COLUMNS = ["ok", "timeout", "mismatch", "unsupported", "error", "not run", "pending"]
 
@@ -19,15 +20,7 @@ def table(
         counts = ledger.tally(recording)
         file = "baked" if is_baked(recording) else "to split" if recording.source else "to bake"
         rows.append([recording.name, file, *(str(counts[name] or "–") for name in COLUMNS)])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = [
-        "  ".join(
-            cell.ljust(width) if i < 2 else cell.rjust(width)
-            for i, (cell, width) in enumerate(zip(row, widths))
-        ).rstrip()
-        for row in rows
-    ]
-    return "\n".join([*lines, *_caps(ledger, recordings)])
+    return "\n".join([*aligned(rows, left=2), *_caps(ledger, recordings)])
 
 
 def _caps(ledger: Ledger, recordings: list[Recording]) -> Iterator[str]:

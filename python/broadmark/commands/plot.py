@@ -12,7 +12,6 @@ from functools import partial
 
 from broadmark import selection
 from broadmark.drawing import check_format, draw_pages
-from broadmark.errors import InputError
 from broadmark.files import report_written
 from broadmark.plots import KINDS, PAGED
 from broadmark.plots.cases import omitted, timed_cases
@@ -38,10 +37,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> None:
     check_format(options.output)
-    machine, results = selection.single_machine(selection.read_selected(options))
-    results = results.select(selection.match_cases(results.cases, options))
-    if not len(results.cases):
-        raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
+    machine, results = selection.read_cases(options)
     cases = timed_cases(results, log=options.log, note=machine)
     if reasons := omitted(results.cases):
         print(f"cases without a time are not shown: {reasons}", file=sys.stderr)

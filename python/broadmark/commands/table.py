@@ -22,6 +22,7 @@ from broadmark import selection
 from broadmark.errors import InputError
 from broadmark.files import write_text
 from broadmark.results import COLUMNS, NUMBERS, SELF_CHECK_FAMILY, commit_name, is_unknown
+from broadmark.text_tables import aligned, markdown_row
 
 TITLES = {column["key"]: column["title"] for column in COLUMNS}
 UNITS = {column["key"]: column["unit"] for column in COLUMNS}
@@ -65,11 +66,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> None:
-    _, results = selection.single_machine(selection.read_selected(options))
-    cases = results.cases[selection.match_cases(results.cases, options)]
-    cases = cases[cases["family"] != SELF_CHECK_FAMILY]
+    _, results = selection.read_cases(options)
+    cases = results.cases[results.cases["family"] != SELF_CHECK_FAMILY]
     if not len(cases):
-        raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
+        raise InputError("no case is left: only self-checks")
     for key in [*options.rows, *options.columns]:
         if key not in TITLES:
             raise InputError(f"'{key}' is no column: there are {', '.join(TITLES)}")
@@ -189,21 +189,13 @@ def _digits(value: float) -> str:
 
 def _as_text(table: Table) -> str:
     lines = [table.headings, *table.rows]
-    widths = [max(map(len, column)) for column in zip(*lines)]
-    text = [
-        "  ".join(
-            cell.ljust(width) if i < table.names else cell.rjust(width)
-            for i, (cell, width) in enumerate(zip(line, widths))
-        ).rstrip()
-        for line in lines
-    ]
-    return "\n".join([table.caption, *text]) + "\n"
+    return "\n".join([table.caption, *aligned(lines, table.names)]) + "\n"
 
 
 def _as_markdown(table: Table) -> str:
     rules = ["---"] * table.names + ["---:"] * (len(table.headings) - table.names)
     rows = [[f"`{row[0]}`", *row[1:]] for row in table.rows]
-    lines = ["| " + " | ".join(line) + " |" for line in [table.headings, rules, *rows]]
+    lines = map(markdown_row, [table.headings, rules, *rows])
     return "\n".join([*lines, "", f"*{table.caption}*"]) + "\n"
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from broadmark.history.history import History, Line, Step
 from broadmark.history.measures import Measure
+from broadmark.text_tables import aligned
 
 SCHEMA = "broadmark-history/1"
 
@@ -44,17 +45,10 @@ def text_table(history: History) -> str:
     table = [titles] + [_text_row(history, row) for row in rows_of(history)]
     if len(history.machines) == 1:
         table = [[cells[0], *cells[2:]] for cells in table]
-    widths = [max(map(len, column)) for column in zip(*table)]
     left = len(titles) - 4 if len(history.machines) > 1 else len(titles) - 5
     text = ""
     if len(table) > 1:
-        for cells in table:
-            padded = [
-                cell.ljust(width) if i < left else cell.rjust(width)
-                for i, (cell, width) in enumerate(zip(cells, widths))
-            ]
-            text += "  ".join(padded).rstrip() + "\n"
-        text += "\n"
+        text = "\n".join(aligned(table, left)) + "\n\n"
     for machine in history.machines:
         for step in machine.steps:
             text += (

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 
 from broadmark.paper.algorithms import BY_ID, CAP_SECONDS, SCENES, Scene, table2
 from broadmark.paper.times import SPIKE_FACTOR, SPIKE_WINDOW, Times
+from broadmark.text_tables import aligned, markdown_row
 
 REFERENCE = "cgal"
 
@@ -193,9 +194,7 @@ def as_text(pages: list[Page]) -> str:
                 sizes += [f"{objects:,}"] + [""] * (len(names) - 1)
                 kinds += names
             lines = [sizes, kinds, *([name, id_, *cells] for name, id_, cells in grid.rows)]
-            widths = [max(len(line[i]) for line in lines) for i in range(len(kinds))]
-            text = ["  ".join(c.ljust(w) for c, w in zip(line, widths)).rstrip() for line in lines]
-            blocks.append("\n".join([grid.title, *text]))
+            blocks.append("\n".join([grid.title, *aligned(lines, left=len(kinds))]))
         blocks.append("\n".join(page.notes))
     return "\n\n".join(blocks) + "\n"
 
@@ -209,10 +208,10 @@ def as_markdown(pages: list[Page]) -> str:
             headings = ["paper’s name", "algorithm"]
             for objects, names in grid.columns:
                 headings += [f"{objects:,} {name}" for name in names]
-            lines = ["| " + " | ".join(headings) + " |", "|" + "---|" * len(headings)]
+            lines = [markdown_row(headings), "|" + "---|" * len(headings)]
             for name, id_, cells in grid.rows:
                 row = [name, f"`{id_}`", *cells]
-                lines.append("| " + " | ".join(map(_escaped_markdown, row)) + " |")
+                lines.append(markdown_row([cell.replace("<", "&lt;") for cell in row]))
             blocks += [f"### {grid.title}", "\n".join(lines)]
         blocks.append("\n".join(map(_escaped_markdown, page.notes)))
     return "\n\n".join(blocks) + "\n"

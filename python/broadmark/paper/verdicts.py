@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from broadmark.paper.claims import TERMS, Judgement
 from broadmark.paper.evidence import FIRST, Outcome, PartVerdict
+from broadmark.text_tables import markdown_row
 
 MARKS = {
     Outcome.FAILS: "–",
@@ -75,7 +76,7 @@ def _as_markdown(all_verdicts: list[Verdicts]) -> str:
         for judgement in verdicts.judgements:
             figures = "<br>".join(_lines(judgement.parts))
             cells = [str(judgement.number), judgement.claim, judgement.verdict.value, figures]
-            rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+            rows.append(markdown_row(cells))
         blocks += [
             f"## {verdicts.machine}",
             "; ".join([*verdicts.conditions, verdicts.summary]),
