@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
@@ -20,9 +19,11 @@
 
 #include "benchmarks/contest.h"
 #include "benchmarks/kinds_of_boxes.h"
+#include "benchmarks/stopwatch.h"
 #include "broadmark/large_array.h"
 #include "columns/column_bins.h"
 #include "columns/layout.h"
+#include "sample.h"
 
 namespace {
 
@@ -56,9 +57,7 @@ int run(int argc, char** argv) {
 
   const LargeVector<Aabb> boxes(frames[0].begin(), frames[0].end());
   std::vector<Aabb> sample;
-  for (std::size_t i = 0; i < bodies; i += std::max<std::size_t>(bodies / 2048, 1)) {
-    sample.push_back(boxes[i]);
-  }
+  takeSample(bodies, [&](std::size_t i) -> const Aabb& { return boxes[i]; }, sample);
   constexpr double kCopyCost = 150;  // the default of `columns`
   const columns::Layout layout(sample, bodies, kCopyCost);
   const columns::Quantizer& a = layout.quantizers().cut[0];
@@ -97,13 +96,7 @@ int run(int argc, char** argv) {
 
   for (int round = 0; round < rounds; ++round) {
     contest.run(1);
-    for (Pass& pass : passes) {
-      const auto begin = std::chrono::steady_clock::now();
-      pass.work();
-      const std::chrono::duration<double, std::milli> time =
-          std::chrono::steady_clock::now() - begin;
-      pass.milliseconds.push_back(time.count());
-    }
+    for (Pass& pass : passes) pass.milliseconds.push_back(nanosecondsOf(pass.work) * 1e-6);
   }
   double floor = 0;
   for (const Pass& pass : passes) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/stopwatch.h"
 #include "broadmark/aabb.h"
 #include "broadmark/broadphase.hpp"
 #include "torture/inputs.h"
@@ -31,13 +31,6 @@ struct LibraryArguments {
     if (sizes.empty()) sizes = std::move(default_sizes);
   }
 };
-
-template <class Call>
-double nanosecondsOf(const Call& call) {
-  const auto begin = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count();
-}
 
 /// The boxes, for the library to read where they lie.
 inline bp::Boxes viewOf(const std::vector<Aabb>& boxes) {

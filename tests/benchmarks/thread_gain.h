@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "benchmarks/contest.h"
+#include "benchmarks/stopwatch.h"
 #include "broadmark/execution.h"
 
 namespace broadmark::benchmarks {
@@ -28,18 +28,11 @@ class WholeCores {
   /// Whether a loop takes no longer on all cores at once than on a single core.
   bool areWhole() {
     constexpr double kMaxRatio = 1.06;
-    const double single = msOf([] { spin(); });
-    return msOf([&] { team_.run([](int) { spin(); }); }) <= kMaxRatio * single;
+    const double single = nanosecondsOf([] { spin(); });
+    return nanosecondsOf([&] { team_.run([](int) { spin(); }); }) <= kMaxRatio * single;
   }
 
  private:
-  template <class Work>
-  static double msOf(Work work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-        .count();
-  }
   /// A millisecond of independent multiplications and additions, which saturate a core: two such
   /// loops on SMT siblings take twice as long.
   static void spin() {
