@@ -33,6 +33,7 @@
 #include "corner.h"
 #include "prefetch.h"
 #include "simd/overlap_kernels.h"
+#include "simd/sweep_kernels.h"
 #include "test_counts.h"
 #include "work_shares.h"
 
@@ -113,6 +114,7 @@ class Grid final : public PairBroadPhase {
                   ExecutionContext& execution) override {
     PairBroadPhase::initialize(scene, first, execution);
     kernels_ = &overlapKernels(execution.isa());
+    sweep_kernels_ = &sweepKernels(execution.isa());
     workers_.resize(static_cast<std::size_t>(team().size()));
     updateObjects(first);
     updateStructures();
@@ -161,8 +163,8 @@ class Grid final : public PairBroadPhase {
                             pairs(worker));
       for (std::size_t i = part.begin; i < part.end; ++i) {
         forEachRowOfCells(i, [&](Range entries, CellBody phantoms) {
-          kernels_->test_row(arrays_, i, bodies_[i] | phantoms, entries, bodies_.data(),
-                             pairs(worker));
+          sweep_kernels_->test_row(arrays_, i, bodies_[i] | phantoms, entries, bodies_.data(),
+                                   pairs(worker));
         });
       }
     });
@@ -289,6 +291,7 @@ class Grid final : public PairBroadPhase {
   CellSearch search_;
   std::int64_t objects_per_cell_;
   const OverlapKernels* kernels_ = nullptr;
+  const SweepKernels* sweep_kernels_ = nullptr;
   std::vector<Worker> workers_;
 
   std::vector<Aabb> boxes_;

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "moments.h"
-#include "simd/overlap_kernels.h"
+#include "simd/sweep_kernels.h"
 #include "sorted_windows.h"
 #include "test_counts.h"
 #include "variants.h"
@@ -33,7 +33,7 @@ class SweepAndPrune final : public BoxBroadPhase {
                   ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
-    kernels_ = &overlapKernels(execution.isa());
+    kernels_ = &sweepKernels(execution.isa());
     moments_.resize(static_cast<std::size_t>(team().size()));
     updateStructures();
   }
@@ -91,7 +91,7 @@ class SweepAndPrune final : public BoxBroadPhase {
     axes_ = all.axes(static_cast<double>(boxes().size()));
   }
 
-  const OverlapKernels* kernels_ = nullptr;
+  const SweepKernels* kernels_ = nullptr;
   Aabb world_;
   std::vector<Moments> moments_;  ///< one per worker
   AxisOrder axes_ = {0, 1, 2};    ///< [0] is the sort axis

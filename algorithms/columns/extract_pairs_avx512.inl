@@ -56,13 +56,6 @@ inline unsigned anyOfFour(std::uint32_t low, std::uint32_t high) {
   return _pext_u32(bits, 0x1111'1111);
 }
 
-/// Writes the selected elements contiguously; returns their end.
-template <class T>
-inline T* compressStore(unsigned selected, __m512i eight, T* to) {
-  _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(selected), eight));
-  return to + __builtin_popcount(selected);
-}
-
 std::size_t extractPairs(std::uint64_t* positions, std::uint64_t* masks, std::size_t count,
                          const columns::CellEntry* entries, Pair*& pairs, Pair*& ambiguous) {
   static_assert(columns::Kernels::kExtractWidth == 8 && sizeof(Pair) == 8);

@@ -19,7 +19,9 @@
 namespace broadmark::kd {
 
 Searcher::Searcher(Isa isa)
-    : kernels_(&overlapKernels(isa)), min_tests_to_sort_(kTestsPerSortedBox * kernels_->lanes) {}
+    : kernels_(&overlapKernels(isa)),
+      sweep_kernels_(&sweepKernels(isa)),
+      min_tests_to_sort_(kTestsPerSortedBox * kernels_->lanes) {}
 
 void Searcher::search(const Scene& scene, int part, int parts, PairBuffer& pairs) {
   scene_ = &scene;
@@ -135,8 +137,8 @@ void Searcher::sweep() {
 
   const auto box_of = [this](std::size_t i) -> const Aabb& { return scene_->boxes[arranged_[i]]; };
   sorted_.build(count, box_of, axes, single_thread_);
-  kernels_->sweep(sorted_.boxes(), sorted_.ends().data(), sorted_.bodies().data(), {0, count},
-                  hits_);
+  sweep_kernels_->sweep(sorted_.boxes(), sorted_.ends().data(), sorted_.bodies().data(), {0, count},
+                        hits_);
 }
 
 /// Adds the hits that are wanted and belong to this node.

@@ -11,6 +11,7 @@
 #include "broadmark/pair.h"
 #include "kd/tree.h"
 #include "simd/overlap_kernels.h"
+#include "simd/sweep_kernels.h"
 #include "sorted_windows.h"
 
 namespace broadmark::kd {
@@ -67,6 +68,7 @@ class Searcher {
   void pushSection(std::size_t begin, std::size_t end, Reaches reaches);
 
   const OverlapKernels* kernels_;
+  const SweepKernels* sweep_kernels_;
   std::size_t min_tests_to_sort_;
 
   const Scene* scene_ = nullptr;

@@ -1,7 +1,7 @@
 // Compiles the file named by BROADMARK_KERNELS once for each instruction set, in the namespaces
 // broadmark::simd::scalar, sse2, avx2 and avx512 (on ARM scalar and neon, in WebAssembly scalar and
 // simd128), each with its own Vector (vector_*.inl). BROADMARK_AVX512 is defined while compiling
-// for AVX-512.
+// for AVX-512, BROADMARK_STORES_PAIRS for instruction sets with loadSelected() and storePairs().
 //
 // Only these functions are compiled for a target: with -mavx2 for a whole file, the linker might
 // keep the AVX2 versions of shared inline functions for the entire program. So kernels must not
@@ -50,6 +50,7 @@ namespace sse2 {
 }  // namespace sse2
 BROADMARK_TARGET_END
 
+#define BROADMARK_STORES_PAIRS
 BROADMARK_TARGET_BEGIN("avx2")
 namespace avx2 {
 #include "simd/vector_avx2.inl"
@@ -64,6 +65,7 @@ namespace avx512 {
 #include BROADMARK_KERNELS
 }  // namespace avx512
 #undef BROADMARK_AVX512
+#undef BROADMARK_STORES_PAIRS
 BROADMARK_TARGET_END
 
 #elif defined(__aarch64__)

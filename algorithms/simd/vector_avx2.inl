@@ -48,6 +48,35 @@ inline unsigned positive(Keys numbers) {
   return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(raw(numbers), _mm256_setzero_si256())));
 }
 
+inline Keys loadSelected(const std::uint32_t* from, unsigned lanes) {
+  const __m256i bit = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  const __m256i selected =
+      _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(lanes)), bit), bit);
+  return reinterpret_cast<Keys>(
+      _mm256_maskload_epi32(reinterpret_cast<const int*>(from), selected));
+}
+/// Stores the selected ones of four pairs contiguously, and four in all; returns their end.
+template <class Pair>
+inline Pair* storeFourPairs(Pair* to, unsigned selected, __m256i pairs) {
+  static constexpr std::uint32_t kPlaces[16][8] = {
+      {0, 1, 0, 1, 0, 1, 0, 1}, {0, 1, 0, 1, 0, 1, 0, 1}, {2, 3, 0, 1, 0, 1, 0, 1},
+      {0, 1, 2, 3, 0, 1, 0, 1}, {4, 5, 0, 1, 0, 1, 0, 1}, {0, 1, 4, 5, 0, 1, 0, 1},
+      {2, 3, 4, 5, 0, 1, 0, 1}, {0, 1, 2, 3, 4, 5, 0, 1}, {6, 7, 0, 1, 0, 1, 0, 1},
+      {0, 1, 6, 7, 0, 1, 0, 1}, {2, 3, 6, 7, 0, 1, 0, 1}, {0, 1, 2, 3, 6, 7, 0, 1},
+      {4, 5, 6, 7, 0, 1, 0, 1}, {0, 1, 4, 5, 6, 7, 0, 1}, {2, 3, 4, 5, 6, 7, 0, 1},
+      {0, 1, 2, 3, 4, 5, 6, 7}};
+  const __m256i places = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPlaces[selected]));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(pairs, places));
+  return to + __builtin_popcount(selected);
+}
+template <class Pair>
+inline Pair* storePairs(Pair* to, unsigned lanes, Keys a, Keys b) {
+  const __m256i pairs_0145 = _mm256_unpacklo_epi32(raw(a), raw(b));
+  const __m256i pairs_2367 = _mm256_unpackhi_epi32(raw(a), raw(b));
+  to = storeFourPairs(to, lanes & 15, _mm256_permute2x128_si256(pairs_0145, pairs_2367, 0x20));
+  return storeFourPairs(to, lanes >> 4, _mm256_permute2x128_si256(pairs_0145, pairs_2367, 0x31));
+}
+
 inline constexpr std::size_t kHitLanes = 4;  // packing works within 128-bit halves
 inline std::uint64_t hitsAtOffsets(const std::uint32_t* keys, Keys limits, Keys remaining) {
   __m256i hits[kHitOffsets];

@@ -74,6 +74,25 @@ inline std::uint64_t hitsAtOffsets(const std::uint32_t* keys, Keys limits, Keys 
                                         _mm512_kunpackw(hits[1], hits[0])));
 }
 
+/// Writes the selected elements contiguously, and up to eight elements in all; returns their end.
+template <class T>
+inline T* compressStore(unsigned selected, __m512i eight, T* to) {
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(selected), eight));
+  return to + __builtin_popcount(selected);
+}
+
+inline Keys loadSelected(const std::uint32_t* from, unsigned lanes) {
+  return reinterpret_cast<Keys>(_mm512_maskz_loadu_epi32(static_cast<__mmask16>(lanes), from));
+}
+template <class Pair>
+inline Pair* storePairs(Pair* to, unsigned lanes, Keys a, Keys b) {
+  const __m512i first_half =
+      _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const __m512i second_half = _mm512_add_epi32(first_half, _mm512_set1_epi32(8));
+  to = compressStore(lanes & 0xFF, _mm512_permutex2var_epi32(raw(a), first_half, raw(b)), to);
+  return compressStore(lanes >> 8, _mm512_permutex2var_epi32(raw(a), second_half, raw(b)), to);
+}
+
 inline void streamStore(float* to, Vector value) { _mm512_stream_ps(to, value); }
 inline Vector loadUnaligned(const float* from) { return _mm512_loadu_ps(from); }
 

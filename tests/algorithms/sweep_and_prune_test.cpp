@@ -8,6 +8,7 @@
 #include "algorithms/runs.h"
 #include "radix_sort.h"
 #include "simd/overlap_kernels.h"
+#include "simd/sweep_kernels.h"
 
 namespace broadmark::tests {
 namespace {
@@ -48,7 +49,7 @@ TEST(RadixSort, SortsStablyWhateverTheTeam) {
 }
 
 // A kernel may load whole vectors, but must report only pairs in its ranges.
-TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
+TEST(SweepKernels, TileReportsItsOwnPairsOnly) {
   constexpr std::size_t kCount = 70;
   const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
   BoxArrays arrays;
@@ -76,7 +77,7 @@ TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
 
 // Windows of any length from any row on: several rows are swept at once, then one by one beyond
 // their common part; no pair may be missed or reported by both.
-TEST(OverlapKernels, SweepReportsEveryWindowOnce) {
+TEST(SweepKernels, SweepReportsEveryWindowOnce) {
   constexpr std::size_t kCount = 90;
   BoxArrays arrays;
   arrays.assign(inputs::identical(kCount, 0, 0));
@@ -101,7 +102,7 @@ TEST(OverlapKernels, SweepReportsEveryWindowOnce) {
     for (const auto& [isa, name] : kIsas.entries) {
       if (!isaSupported(isa)) continue;
       PairBuffer found;
-      overlapKernels(isa).sweep(arrays, ends.data(), bodies.data(), rows, found);
+      sweepKernels(isa).sweep(arrays, ends.data(), bodies.data(), rows, found);
       const PairRun pair_run = found.run();
       EXPECT_EQ(sorted({&pair_run, 1}), expected) << name << " rows from " << rows.begin;
     }
