@@ -150,8 +150,10 @@ def best_variants(cases: pd.DataFrame) -> pd.DataFrame:
 
 
 def widest(cases: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
-    """Of the cases that are equal in the columns `keys`, those with the widest instruction set."""
+    """Of the cases that are equal in the columns `keys`, those with the widest instruction set that
+    is supported."""
     rank = cases["isa"].map(lambda isa: ISAS.index(isa) if isa in ISAS else 0)
+    rank = rank.where(cases["status"] != "unsupported", -1)
     return cases[rank == rank.groupby([cases[key] for key in keys]).transform("max")]
 
 

@@ -84,7 +84,7 @@ def test_every_case_is_run_once(write: Any, launch: Any, tmp_path: pathlib.Path)
     assert cases["id"].is_unique and results(tmp_path).partial == []
     assert set(cases["repetitions"]) == {2} and set(cases["status"]) == {"ok"}
     ids = set(cases["id"])
-    assert "Brownian/Cubes/N20/F5/s2/density=0.05/engine=kinematic/kd-mt/avx2/t1/margin=0" in {
+    assert "Brownian/Cubes/N20/F5/s2/density=0.05/kd-mt/avx2/t1/margin=0" in {
         id_.replace("avx512", "avx2").replace("neon", "avx2") for id_ in ids
     }
     assert "FreeFall/Cubes/N20/F5/s1/engine=bullet/bf-mt/t2" in ids

@@ -20,6 +20,7 @@ def results(tmp_path: pathlib.Path) -> pathlib.Path:
     cases = [
         case("Brownian", 1000, "sap", 0.0025, isa="avx2"),
         case("Brownian", 1000, "sap", 0.009),
+        case("Brownian", 1000, "sap", isa="avx512", status="unsupported"),
         case("Brownian", 8000, "sap", 0.5, status="timeout"),
         case("Brownian", 1000, "grid-sap-mt", 0.00012345),
         case("Brownian", 8000, "grid-sap-mt", 1.234),

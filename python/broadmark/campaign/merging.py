@@ -11,7 +11,7 @@ import json
 import os
 import pathlib
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from typing import Any
 
 from broadmark.campaign.attempts import AttemptLine, read_attempt, variant_of
@@ -20,6 +20,7 @@ from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.plan import Recording, as_text
 from broadmark.errors import InputError
 from broadmark.program import call
+from broadmark.report.labels import varying
 from broadmark.results import SCHEMAS
 
 
@@ -36,7 +37,7 @@ def merge(folder: Folder, ledger: Ledger) -> bool:
 
 
 def _write_parts(parts: pathlib.Path, folder: Folder, ledger: Ledger) -> Iterator[pathlib.Path]:
-    varying = _varying_settings(ledger.recordings)
+    varying_names = _varying_settings(ledger.recordings)
     for recording in ledger.recordings:
         source = folder.file(recording).relative_to(folder.path)
         merged_variants: set[str] = set()
@@ -48,7 +49,7 @@ def _write_parts(parts: pathlib.Path, folder: Folder, ledger: Ledger) -> Iterato
                     if variant in merged_variants:
                         continue
                     merged_variants.add(variant)
-                    _identify(line.content, recording, variant, varying, source)
+                    _identify(line.content, recording, variant, varying_names, source)
                 lines.append(line)
             if any(line.kind == "case" for line in lines):
                 path = parts / f"{len(list(parts.iterdir()))}.jsonl"
@@ -56,29 +57,26 @@ def _write_parts(parts: pathlib.Path, folder: Folder, ledger: Ledger) -> Iterato
                 yield path
 
 
-def _varying_settings(recordings: list[Recording]) -> set[str]:
-    """The settings that vary between the campaign's recordings, besides scene, object type, size and
-    seed."""
-    values: dict[str, set[Any]] = {}
-    for recording in recordings:
-        for name, value in _settings(recording).items():
-            values.setdefault(name, set()).add(value)
-    return {
-        name
-        for name, distinct in values.items()
-        if len(distinct) > 1 or any(name not in _settings(recording) for recording in recordings)
-    }
+def _varying_settings(recordings: list[Recording]) -> dict[Hashable, list[str]]:
+    """The settings that vary between the recordings of a scene, by scene, besides object type, size
+    and seed."""
+    names = {name for recording in recordings for name in _settings(recording)}
+    return varying(
+        (recording.series.scene, {name: _settings(recording).get(name) for name in names})
+        for recording in recordings
+    )
 
 
 def _settings(recording: Recording) -> dict[str, Any]:
-    return {"engine": recording.series.engine, **dict(recording.series.parameters)}
+    engine = recording.series.engine  # "": the scene has none
+    return {**({"engine": engine} if engine else {}), **dict(recording.series.parameters)}
 
 
 def _identify(
     case: dict[str, Any],
     recording: Recording,
     variant: str,
-    varying: set[str],
+    varying_names: dict[Hashable, list[str]],
     source: pathlib.Path,
 ) -> None:
     """Adds the campaign's recording to a case; the program knew only the file."""
@@ -93,7 +91,8 @@ def _identify(
         f"F{description['frames']}",
     ]
     parts.append(f"s{description['seed']}")
-    differing = {name: settings[name] for name in sorted(varying & settings.keys())}
+    names = settings.keys() & varying_names[recording.series.scene]
+    differing = {name: settings[name] for name in sorted(names)}
     if differing:
         description["swept"] = differing
         parts += [f"{name}={value}" for name, value in differing.items()]

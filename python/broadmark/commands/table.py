@@ -194,7 +194,8 @@ def _as_text(table: Table) -> str:
 
 def _as_markdown(table: Table) -> str:
     rules = ["---"] * table.names + ["---:"] * (len(table.headings) - table.names)
-    rows = [[f"`{row[0]}`", *row[1:]] for row in table.rows]
+    code = [heading == TITLES["algorithm"] for heading in table.headings]
+    rows = [[f"`{cell}`" if c else cell for c, cell in zip(code, row)] for row in table.rows]
     lines = map(markdown_row, [table.headings, rules, *rows])
     return "\n".join([*lines, "", f"*{table.caption}*"]) + "\n"
 
