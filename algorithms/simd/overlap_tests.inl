@@ -37,15 +37,22 @@ void addManyHits(std::uint64_t, std::size_t, std::size_t, std::size_t, const Pol
 }
 #endif
 
+/// The hits of some rows in the vector at `column`.
+struct VectorHits {
+  std::size_t column;
+  std::uint64_t hits;
+};
+
 /// Tests the boxes [row, row + kCount) against `columns` from `column` on, on the axes from
-/// kFirstAxis on. Stops at the first vector with many hits, moves `column` there and returns them,
-/// otherwise 0: a call within the loop would move the rows out of their registers.
+/// kFirstAxis on, and adds their hits, but for vectors with many: a call within the loop would move
+/// the rows out of their registers. Stops after kMaxVectors of these, which it stores to `many`;
+/// their number is returned, and `column` is moved on.
+inline constexpr std::size_t kMaxVectors = 32;
 template <int kFirstAxis, std::size_t kCount, class Policy>
-[[gnu::always_inline]] inline std::uint64_t testUntilManyHits(const BoxArrays& boxes,
-                                                              std::size_t row, Range columns,
-                                                              std::size_t& column,
-                                                              const Policy& policy,
-                                                              PairBuffer& pairs) {
+[[gnu::always_inline]] inline std::size_t testVectors(const BoxArrays& boxes, std::size_t row,
+                                                      Range columns, std::size_t& column,
+                                                      const Policy& policy, PairBuffer& pairs,
+                                                      VectorHits* many) {
   Vector row_min[3][kCount];
   Vector row_max[3][kCount];
   for (int axis = kFirstAxis; axis < 3; ++axis) {
@@ -57,7 +64,9 @@ template <int kFirstAxis, std::size_t kCount, class Policy>
   const float* min[3] = {boxes.min(0), boxes.min(1), boxes.min(2)};
   const float* max[3] = {boxes.max(0), boxes.max(1), boxes.max(2)};
 
-  for (std::size_t at = column; at < columns.end; at += kLanes) {
+  std::size_t many_count = 0;
+  std::size_t at = column;
+  for (; at < columns.end; at += kLanes) {
     Mask hits[kCount];
     for (int axis = kFirstAxis; axis < 3; ++axis) {
       const Vector column_min = load(min[axis] + at);
@@ -76,12 +85,15 @@ template <int kFirstAxis, std::size_t kCount, class Policy>
     std::uint64_t all = 0;
     for (std::size_t r = 0; r < kCount; ++r) all |= std::uint64_t{bits(hits[r])} << (r * kLanes);
     if (kCount == kRows && isManyHits(all)) [[unlikely]] {
-      column = at;
-      return all;
+      many[many_count++] = {at, all};
+      if (many_count < kMaxVectors) continue;
+      at += kLanes;
+      break;
     }
     addHits(all, row, at, columns.begin, policy, pairs);
   }
-  return 0;
+  column = at;
+  return many_count;
 }
 
 /// Tests the boxes [row, row + kCount) against `columns` on the axes from kFirstAxis on, in whole,
@@ -89,11 +101,15 @@ template <int kFirstAxis, std::size_t kCount, class Policy>
 template <int kFirstAxis, std::size_t kCount, class Policy>
 void testRows(const BoxArrays& boxes, std::size_t row, Range columns, const Policy& policy,
               PairBuffer& pairs) {
-  for (std::size_t column = roundedDown(columns.begin); column < columns.end; column += kLanes) {
-    const std::uint64_t hits =
-        testUntilManyHits<kFirstAxis, kCount>(boxes, row, columns, column, policy, pairs);
-    if (hits == 0) return;
-    if constexpr (kCount == kRows) addManyHits(hits, row, column, columns.begin, policy, pairs);
+  VectorHits many[kMaxVectors];
+  for (std::size_t column = roundedDown(columns.begin); column < columns.end;) {
+    const std::size_t count =
+        testVectors<kFirstAxis, kCount>(boxes, row, columns, column, policy, pairs, many);
+    if constexpr (kCount == kRows) {
+      for (std::size_t k = 0; k < count; ++k) {
+        addManyHits(many[k].hits, row, many[k].column, columns.begin, policy, pairs);
+      }
+    }
   }
 }
 
