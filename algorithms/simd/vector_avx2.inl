@@ -48,6 +48,7 @@ inline unsigned positive(Keys numbers) {
   return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(raw(numbers), _mm256_setzero_si256())));
 }
 
+/// The keys of the selected lanes; others are 0, and are not read.
 inline Keys loadSelected(const std::uint32_t* from, unsigned lanes) {
   const __m256i bit = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
   const __m256i selected =
@@ -55,7 +56,8 @@ inline Keys loadSelected(const std::uint32_t* from, unsigned lanes) {
   return reinterpret_cast<Keys>(
       _mm256_maskload_epi32(reinterpret_cast<const int*>(from), selected));
 }
-/// Stores the selected ones of four pairs contiguously, and four in all; returns their end.
+/// Stores the selected ones of four pairs contiguously, four in all; returns the end of the
+/// selected ones.
 template <class Pair>
 inline Pair* storeFourPairs(Pair* to, unsigned selected, __m256i pairs) {
   static constexpr std::uint32_t kPlaces[16][8] = {
@@ -69,6 +71,8 @@ inline Pair* storeFourPairs(Pair* to, unsigned selected, __m256i pairs) {
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(pairs, places));
   return to + __builtin_popcount(selected);
 }
+/// Stores the pairs (a, b) of the selected lanes contiguously, and possibly up to kLanes pairs
+/// behind them; returns their end.
 template <class Pair>
 inline Pair* storePairs(Pair* to, unsigned lanes, Keys a, Keys b) {
   const __m256i pairs_0145 = _mm256_unpacklo_epi32(raw(a), raw(b));
