@@ -213,6 +213,17 @@ def test_a_single_recording_can_be_run(write: Any, launch: Any, tmp_path: pathli
     assert status == 2 and "not a recording shown by --list" in err
 
 
+def test_only_what_varies_within_a_scene_is_in_an_id(
+    write: Any, launch: Any, tmp_path: pathlib.Path
+) -> None:
+    swarm = {"scenes": "swarm", "objects": 20, "frames": 5}  # has no engine
+    status, _, err = launch(write(recordings=[BLOCK | {"objects": 20}, swarm], algorithm=["bf"]))
+    assert status == 0, err
+    cases = results(tmp_path).cases
+    assert set(cases["id"]) == {"Brownian/Cubes/N20/F5/s1/bf", "Swarm/Cubes/N20/F5/s1/bf"}
+    assert set(cases["varied_params"]) == {""}
+
+
 def test_wrong_answers_do_not_stop_a_campaign(
     write: Any, launch: Any, tmp_path: pathlib.Path, faulty_plugin: str
 ) -> None:

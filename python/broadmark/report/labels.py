@@ -19,8 +19,9 @@ def varying(groups: Iterable[tuple[Hashable, dict[str, Any]]]) -> dict[Hashable,
     """The names of the parameters with several values, by group."""
     values: dict[Hashable, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for group, parameters in groups:
+        own = values[group]  # also without parameters
         for name, value in parameters.items():
-            values[group][name].add(str(value))
+            own[name].add(str(value))
     return {
         group: [name for name, distinct in names.items() if len(distinct) > 1]
         for group, names in values.items()
