@@ -44,11 +44,13 @@ struct VectorHits {
   std::uint64_t hits;
 };
 
-/// Tests the boxes [row, row + kCount) against `columns` from `column` on, on the axes from
-/// kFirstAxis on, and adds their hits, but for vectors with many: a call within the loop would move
-/// the rows out of their registers. Stops after kMaxVectors of these, which it stores to `many`;
-/// their number is returned, and `column` is moved on.
+/// Vectors with many hits that are collected before their pairs are stored.
 inline constexpr std::size_t kMaxVectors = 32;
+
+/// Adds the hits of the boxes [row, row + kCount) in `columns` from `column` on, tested on the axes
+/// from kFirstAxis on. Stores vectors with many hits to `many` instead, since a call within the
+/// loop would move the rows out of their registers. Stops after kMaxVectors of these; moves
+/// `column` to the next vector, and returns their number.
 template <int kFirstAxis, std::size_t kCount, class Policy>
 [[gnu::always_inline]] inline std::size_t testVectors(const BoxArrays& boxes, std::size_t row,
                                                       Range columns, std::size_t& column,

@@ -49,7 +49,7 @@ TEST(RadixSort, SortsStablyWhateverTheTeam) {
 }
 
 // A kernel may load whole vectors, but must report only pairs in its ranges.
-TEST(SweepKernels, TileReportsItsOwnPairsOnly) {
+TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
   constexpr std::size_t kCount = 70;
   const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
   BoxArrays arrays;
