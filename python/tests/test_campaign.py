@@ -450,23 +450,25 @@ def test_spans_and_repetitions_of_a_block(write: Any, launch: Any, tmp_path: pat
     assert status == 0, error
     cases = results(tmp_path)
     table = cases.cases
-    found = dict(zip(zip(table["scene"], table["objects"], table["frames"]), table["repetitions"]))
-    assert found == {
-        ("Brownian", 20, 9): 2,
-        ("Brownian", 20, 4): 1,
-        ("Brownian", 30, 2): 1,
-        ("Fountain", 40, 4): 1,
+    keys = zip(table["scene"], table["objects"], table["frames"], table["varied_params"])
+    assert dict(zip(keys, table["repetitions"])) == {
+        ("Brownian", 20, 9, ""): 2,
+        ("Brownian", 20, 1, "span=1-2"): 1,
+        ("Brownian", 20, 2, "span=6-8"): 1,
+        ("Brownian", 30, 2, "span=3-5"): 1,
+        ("Fountain", 40, 1, "span=2-3"): 1,
+        ("Fountain", 40, 2, "span=7-9"): 1,
     }
     assert set(table["status"]) == {"ok"}
     pairs = {
         (row.objects, row.frames): list(cases.details[row.case]["frame_counts"]["pairs"])
-        for row in table[table["scene"] == "Brownian"].itertuples()
+        for row in table[(table["scene"] == "Brownian") & (table["objects"] == 20)].itertuples()
     }
     whole = pairs[20, 9]  # of frames 1 to 9
-    assert pairs[20, 4] == [whole[1], whole[5], whole[6], whole[7]]
+    assert pairs[20, 1] == whole[1:2] and pairs[20, 2] == whole[6:8]
     # The same command finds nothing to do; other repetitions are another campaign.
     assert launch(write(recordings=blocks, algorithm=["kd"]))[0] == 0
-    assert len(results(tmp_path).cases) == 4
+    assert len(results(tmp_path).cases) == 6
     blocks[0]["repetitions"] = 3
     assert "in another way" in launch(write(recordings=blocks, algorithm=["kd"]))[2]
 

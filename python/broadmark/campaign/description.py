@@ -24,8 +24,7 @@ Value = str | int | float | bool
 Values = tuple[tuple[str, tuple[Value, ...]], ...]
 
 
-#: The first and last frames of parts of a recording, ascending.
-Spans = tuple[tuple[int, int], ...]
+Span = tuple[int, int]  #: the first and last frame of a part of a recording
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Block:
     seeds: tuple[int, ...]
     parameters: Values
     split: bool  #: split from recordings with an eighth of the bodies, not simulated
-    spans: Spans  #: only these frames are run; (): all
+    spans: tuple[Span, ...]  #: parts, each run as a recording of its own; (): all is run
     options: tuple[tuple[str, Any], ...]  #: for measuring, instead of the campaign's
 
 

@@ -90,17 +90,17 @@ class Folder:
         return exists and (not recording.is_split or self.poses(recording).exists())
 
     def cut(self, recording: Recording) -> None:
-        """Writes the file of a recording that consists of spans of another."""
-        assert recording.whole
+        """Writes the file of a recording that is a part of another."""
+        assert recording.whole and recording.span
         path = self.file(recording.whole)
         whole = read_recording(path)
         if isinstance(whole, PoseRecording):
             raise InputError(f"{path}: has poses, not boxes")
-        frames = [k for first, last in recording.spans for k in range(first, last + 1)]
-        chosen = set(frames)
+        first, last = recording.span
+        frames = range(first, last + 1)
         groups: Groups | Iterable[Groups] | None = None
         if isinstance(whole, ChangingRecording):
-            boxes = (boxes for k, (boxes, _) in enumerate(whole.frames()) if k in chosen)
+            boxes = (boxes for k, (boxes, _) in enumerate(whole.frames()) if k in frames)
             groups = map(whole.groups_at, frames) if whole.filter_changes else whole.groups
         else:
             boxes = (whole.boxes[k] for k in frames)
@@ -116,7 +116,7 @@ class Folder:
         )
 
     def _path_of(self, recording: Recording, format_: str) -> pathlib.Path:
-        if recording.spans:
+        if recording.span:
             return self.bake_folder(recording) / "spans" / f"{recording.name}.{format_}"
         series = recording.series
         name = self._names[series.scene.lower(), series.object_type.lower()]

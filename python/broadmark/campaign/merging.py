@@ -17,7 +17,7 @@ from typing import Any
 from broadmark.campaign.attempts import AttemptLine, read_attempt, variant_of
 from broadmark.campaign.folder import Folder
 from broadmark.campaign.ledger import Ledger
-from broadmark.campaign.plan import Recording, as_text
+from broadmark.campaign.plan import Recording, as_text, span_text
 from broadmark.errors import InputError
 from broadmark.program import call
 from broadmark.report.labels import varying
@@ -69,7 +69,11 @@ def _varying_settings(recordings: list[Recording]) -> dict[Hashable, list[str]]:
 
 def _settings(recording: Recording) -> dict[str, Any]:
     engine = recording.series.engine  # "": the scene has none
-    return {**({"engine": engine} if engine else {}), **dict(recording.series.parameters)}
+    return {
+        **({"engine": engine} if engine else {}),
+        **({"span": span_text(recording.span)} if recording.span else {}),
+        **dict(recording.series.parameters),
+    }
 
 
 def _identify(

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from broadmark.campaign.description import Block, Campaign, Spans, Value
+from broadmark.campaign.description import Block, Campaign, Span, Value
 from broadmark.errors import InputError
 from broadmark.recordings import HEADER, RECORD_BYTES
 
@@ -43,16 +43,16 @@ class Recording:
     source: Recording | None  #: the recording to split; None: simulated
     is_split: bool = False  #: a source of other recordings: its poses are recorded, too
     is_cut: bool = False  #: only spans of it are run
-    spans: Spans = ()  #: the frames of `whole` that it consists of
+    span: Span | None = None  #: the part of `whole` that it is
     whole: Recording | None = None
     options: tuple[tuple[str, Any], ...] = ()  #: for measuring, instead of the campaign's
 
     @property
     def name(self) -> str:
         series = self.series
-        spans = "".join(f" {first}-{last}" for first, last in self.spans)
+        span = f" {span_text(self.span)}" if self.span else ""
         return (
-            f"{series.scene} {series.object_type} N{self.objects} F{self.frames}{spans} "
+            f"{series.scene} {series.object_type} N{self.objects} F{self.frames}{span} "
             f"{series.variation}"
         )
 
@@ -66,7 +66,7 @@ class Recording:
 def planned_recordings(campaign: Campaign) -> list[Recording]:
     """The distinct recordings, the smallest first. Raises InputError for a missing source."""
     baked: dict[tuple[Series, int, int], Block] = {}
-    run: dict[tuple[tuple[Series, int, int], Spans], Block] = {}
+    run: dict[tuple[tuple[Series, int, int], Span | None], Block] = {}
     for block in campaign.blocks:
         for key in _combinations(block):
             other = baked.setdefault(key, block)
@@ -75,11 +75,12 @@ def planned_recordings(campaign: Campaign) -> list[Recording]:
                     f"{campaign.path}: {block.where}: {_name_of(key)} is split in this block and "
                     "simulated in another: remove it from one of them"
                 )
-            if run.setdefault((key, block.spans), block).options != block.options:
-                raise InputError(
-                    f"{campaign.path}: {block.where}: {_name_of(key)} is measured in another way in "
-                    "another block: remove it from one of them"
-                )
+            for span in block.spans or (None,):
+                if run.setdefault((key, span), block).options != block.options:
+                    raise InputError(
+                        f"{campaign.path}: {block.where}: {_name_of(key)} is measured in another way "
+                        "in another block: remove it from one of them"
+                    )
             if block.spans and block.spans[-1][1] > key[2]:
                 raise InputError(
                     f"{campaign.path}: {block.where}.span: frame {block.spans[-1][1]} does not exist: "
@@ -89,7 +90,7 @@ def planned_recordings(campaign: Campaign) -> list[Recording]:
         key: _source_key(campaign, key, baked) for key, block in baked.items() if block.split
     }
     split = set(sources.values())
-    cut = {key for key, spans in run if spans} - {key for key, spans in run if not spans}
+    cut = {key for key, span in run if span} - {key for key, span in run if not span}
 
     def recording(
         key: tuple[Series, int, int], options: tuple[tuple[str, Any], ...] = ()
@@ -99,22 +100,21 @@ def planned_recordings(campaign: Campaign) -> list[Recording]:
             *key, source=source, is_split=key in split, is_cut=key in cut, options=options
         )
 
-    def to_run(key: tuple[Series, int, int], block: Block) -> Recording:
-        if not block.spans:
+    def to_run(key: tuple[Series, int, int], span: Span | None, block: Block) -> Recording:
+        if not span:
             return recording(key, block.options)
         series, objects, _ = key
-        frames = sum(last - first + 1 for first, last in block.spans) - 1
         return Recording(
             series,
             objects,
-            frames,
+            frames=span[1] - span[0],
             source=None,
-            spans=block.spans,
+            span=span,
             whole=recording(key),
             options=block.options,
         )
 
-    recordings = [to_run(key, block) for (key, _), block in run.items()]
+    recordings = [to_run(key, span, block) for (key, span), block in run.items()]
     return sorted(recordings, key=lambda recording: recording.objects)
 
 
@@ -161,6 +161,11 @@ def incompatibility(former: Campaign, campaign: Campaign) -> str:
         ):
             return f"it runs {', '.join(old.algorithms)} with other threads, isa or parameters"
     return ""
+
+
+def span_text(span: Span) -> str:
+    first, last = span
+    return f"{first}-{last}"
 
 
 def as_text(value: Value) -> str:

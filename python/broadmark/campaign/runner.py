@@ -70,27 +70,38 @@ class Runner:
 
         failed: set[Recording] = set()
         needed = sorted(
-            (recording for recording in with_sources(recordings) if not recording.spans),
+            (recording for recording in with_sources(recordings) if not recording.span),
             key=group_key,
         )
         for _, recordings_of_key in itertools.groupby(needed, key=group_key):
             group = list(recordings_of_key)
-            missing = [recording for recording in group if not self.folder.is_baked(recording)]
-            if missing:
-                self.progress.event(f"baking: {_names(missing)}")
-            try:
-                with self.estimate.baking(missing):
-                    self._bake_group(group)
-            except InputError as error:
-                self._report_failure(f"{_names(group)}: {error}")
-                failed.update(group)
+            with self._bake_lock(group[0]):
+                missing = [recording for recording in group if not self.folder.is_baked(recording)]
+                if missing:
+                    self.progress.event(f"baking: {_names(missing)}")
+                try:
+                    with self.estimate.baking(missing):
+                        self._bake_group(group)
+                except InputError as error:
+                    self._report_failure(f"{_names(group)}: {error}")
+                    failed.update(group)
         valid = [
             recording for recording in recordings if failed.isdisjoint(with_sources([recording]))
         ]
         for recording in valid:
-            if recording.spans and not self.folder.is_baked(recording):
+            if recording.span and not self.folder.is_baked(recording):
                 self.folder.cut(recording)
         return valid
+
+    def _bake_lock(self, recording: Recording) -> contextlib.AbstractContextManager[object]:
+        """Processes that run parts of the same recording at the same time bake it once."""
+
+        def waiting() -> None:
+            self.progress.event(f"waiting for another process that bakes {recording.name}")
+
+        if not recording.is_cut:
+            return contextlib.nullcontext()
+        return self.folder.lock(recording, waiting)
 
     def _bake_group(self, recordings: list[Recording]) -> None:
         """Bakes recordings with the same folder and formats by a single call."""
