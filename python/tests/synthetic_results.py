@@ -6,7 +6,7 @@ import json
 import pathlib
 from typing import Any
 
-from broadmark.paper.algorithms import table2
+from broadmark.paper.algorithms import BY_ID, table2
 
 FAMILIES = {"b3": "GPU", "gpu": "GPU", "none": "self-check"}
 
@@ -18,7 +18,8 @@ def case(
     scene: str, objects: int, algorithm: str, seconds: float = 0.0, **others: Any
 ) -> dict[str, Any]:
     """A case with a repetition of one frame. `others` replace or add keys, besides `object_type`, the
-    time limit `limit` and the requested repetitions `asked`."""
+    parameters `swept` between recordings, the time limit `limit` and the requested repetitions
+    `asked`."""
     object_type = others.pop("object_type", "Cubes")
     conditions = {
         "repetitions": others.pop("asked", 1),
@@ -27,8 +28,12 @@ def case(
     threads = others.pop("threads", 4 if algorithm.endswith("-mt") else 1)
     isa = others.pop("isa", "scalar")
     nanoseconds = [[round(seconds * 1e9)]]
+    recording = f"{scene}/{object_type}/N{objects}/F1/s1"
+    swept = others.pop("swept", {})
+    variant = [algorithm, f"t{threads}", isa]
+    variant += [f"{name}={value}" for name, value in others.get("params", {}).items()]
     content: dict[str, Any] = {
-        "id": f"{scene}/{object_type}/N{objects}/F1/s1/{algorithm}/t{threads}/{isa}",
+        "id": "/".join([recording, *map("=".join, swept.items()), *variant]),
         "recording": {
             "name": scene,
             "object_type": object_type,
@@ -37,6 +42,7 @@ def case(
             "seed": 1,
             "hash": "0" * 32,
             "source": {},
+            "swept": swept,
         },
         "algorithm": algorithm,
         "family": FAMILIES.get(algorithm.split("-")[0], "Any"),
@@ -68,10 +74,20 @@ def case(
     return {**content, **others}
 
 
+def paper_case(
+    scene: str, objects: int, algorithm: str, seconds: float = 0.0, **others: Any
+) -> dict[str, Any]:
+    """A case with the settings of the paper's original."""
+    settings = BY_ID[algorithm].settings
+    params = dict(setting.split("=") for setting in settings.split())
+    return case(scene, objects, algorithm, seconds, params=params, **others)
+
+
 def paper_cases() -> list[dict[str, Any]]:
     """The paper's Table 2 as cases."""
     return [
-        case(scene, n, id_, seconds, checked=False) for (scene, n, id_), seconds in table2().items()
+        paper_case(scene, n, id_, seconds, checked=False)
+        for (scene, n, id_), seconds in table2().items()
     ]
 
 

@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 import pytest
-from synthetic_results import CPU, case, paper_cases, write
+from synthetic_results import CPU, case, paper_case, paper_cases, write
 
 from broadmark.paper import algorithms
 from broadmark.paper.algorithms import ALGORITHMS, table2
@@ -248,7 +248,7 @@ def test_changed_times_flip_verdicts(
     command: Any,
 ) -> None:
     cases = [
-        case(name, n, id_, seconds * (factor if (name, id_) == (scene, algorithm) else 1))
+        paper_case(name, n, id_, seconds * (factor if (name, id_) == (scene, algorithm) else 1))
         for (name, n, id_), seconds in table2().items()
     ]
     assert judged(command, write(tmp_path / "a.json", cases))[number][0] == verdict
@@ -260,7 +260,7 @@ def test_claims_without_required_results_are_not_measured(
     cases = [other for other in paper_cases() if other["algorithm"] != "kd"]
     verdicts = judged(command, write(tmp_path / "a.json", cases))
     assert verdicts[6] == (UNKNOWN, "not in these results of Brownian")
-    assert "neither a million objects in Gravity" in verdicts[10][1]
+    assert "not in these results of Gravity" in verdicts[10][1]
     small = [other for other in paper_cases() if other["recording"]["objects"] < 100_000]
     verdicts = judged(command, write(tmp_path / "b.json", small))
     assert verdicts[9][0] == UNKNOWN and "neither a million objects" in verdicts[9][1]
@@ -288,18 +288,15 @@ def test_extra_pairs_are_those_with_the_originals_margin(
 ) -> None:
     sweep = case("Brownian", 1000, "axis-sweep", 0.1, allowed_extra=5)
     plain, wide = (
-        {
-            **case("Brownian", 1000, "kd", 0.1, allowed_extra=found, params=params),
-            "id": f"kd{found}",
-        }
-        for found, params in ((0, {}), (extra, {"margin": 0.01}))
+        make("Brownian", 1000, "kd", 0.1, allowed_extra=found)
+        for make, found in ((case, 0), (paper_case, extra))
     )
     file = write(tmp_path / "a.json", [sweep, plain])
     assert judged(command, file)[12] == (
         INCOMPARABLE,
-        "5.0 % more, mean of 1 cases no checked case with the original’s margin 0.01",
+        "5.0 % more, mean of 1 cases no checked case with the original’s margin=0.01",
     )
-    file = write(tmp_path / "b.json", [sweep, plain, {**wide, "id": "wide"}])
+    file = write(tmp_path / "b.json", [sweep, plain, wide])
     assert judged(command, file)[12][0] == verdict
     # The table keeps to the case without parameters.
     assert command("table2", file)[0] == 0
@@ -339,6 +336,46 @@ def test_sizes_at_which_the_paper_prints_zero_are_no_evidence(
     assert verdict == UNKNOWN and "more than 0.00 s" in figures
 
 
+def test_kd_counts_with_the_originals_margin_alone(tmp_path: pathlib.Path, command: Any) -> None:
+    sap, plain = case("Brownian", 256000, "grid-sap", 0.1), case("Brownian", 256000, "kd", 0.3)
+    verdicts = judged(command, write(tmp_path / "a.json", [sap, plain]))
+    assert verdicts[6] == (INCOMPARABLE, "never with the original’s margin=0.01 in Brownian")
+    original = paper_case("Brownian", 256000, "kd", 0.1)
+    verdicts = judged(command, write(tmp_path / "b.json", [sap, plain, original]))
+    assert verdicts[6][0] == HOLDS and verdicts[6][1].startswith("1.00 times as fast")
+
+
+def test_spans_of_a_recording_are_one_time(tmp_path: pathlib.Path, command: Any) -> None:
+    def span_cases(falling: float, resting: float, id_: str) -> list[dict[str, Any]]:
+        spans = {"100-199": falling, "900-999": resting}
+        return [
+            case("FreeFall", 32000, id_, seconds, swept={"span": span})
+            for span, seconds in spans.items()
+        ]
+
+    cases = [*span_cases(0.3, 0.1, "kd"), *span_cases(0.5, 0.3, "cgal")]
+    cases += span_cases(0.5, 0.3, "sap")[:1]  # without the second span
+    cases += [case("FreeFall", 16000, id_, 0.1) for id_ in ("kd", "cgal", "sap")]
+    file = write(tmp_path / "a.json", cases)
+    rows = {
+        row["algorithm"]: row["seconds_per_frame"]
+        for row in rows_of(command("table2", file, "--format", "csv")[1])
+        if row["objects"] == "32000"
+    }
+    assert (rows["kd"], rows["cgal"], rows["sap"]) == ("0.2", "0.4", "")
+    note = "Free Fall, 32,000 objects: frames 100 to 199 and 900 to 999"
+    for name in ("table2", "claims"):
+        assert note in " ".join(command(name, file)[1].split())
+    # A span past the limit is a time past the limit; a whole recording replaces its spans.
+    late = [{**own, "status": "timeout"} for own in span_cases(0.6, 0.1, "kd")[:1]]
+    cases = [*late, *span_cases(0.6, 0.1, "kd")[1:]]
+    text = command("table2", write(tmp_path / "b.json", cases))[1]
+    assert re.search(r"^KD +kd +timeout ", text, re.MULTILINE)
+    cases.append(case("FreeFall", 32000, "kd", 0.25))
+    text = command("table2", write(tmp_path / "c.json", cases))[1]
+    assert re.search(r"^KD +kd +0\.25 ", text, re.MULTILINE) and "Free Fall, " not in text
+
+
 def test_means_of_spikes_are_marked(tmp_path: pathlib.Path, command: Any) -> None:
     frames = [10_000_000] * 40
     cases = []
@@ -367,7 +404,7 @@ def test_assorted_objects(
     longer = {"dbvt-f": 2.5, "dbvt-d": 2.5, "kd": factor, "tracy": 1.3, "cgal": 1.3}
     interval = [0.099, 0.101]
     cases = [
-        case(
+        paper_case(
             "Gravity",
             1000,
             id_,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import functools
 import pathlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 #: The time per frame up to which larger sizes are shown.
 CAP_SECONDS = 0.5
@@ -31,6 +31,7 @@ SCENES = [
     Scene("FreeFall", "Free Fall", 6),
     Scene("Gravity", "Gravity", 7),
 ]
+TITLES = {scene.name: scene.title for scene in SCENES}
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,7 @@ class Algorithm:
     name: str
     id: str  #: our id
     panel: str  #: SINGLE or PARALLEL
-    #: The original's values of parameters that have another default here.
-    settings: dict[str, float] = field(default_factory=dict)
+    settings: str = ""  #: the original's parameters that have another default here
 
 
 SINGLE, PARALLEL = "single-threaded", "multi-threaded and GPU"
@@ -62,7 +62,7 @@ ALGORITHMS = [
     Algorithm("Tracy ST", "tracy", SINGLE),
     Algorithm("Tracy MT", "tracy-mt", PARALLEL),
     Algorithm("CGAL", "cgal", SINGLE),
-    Algorithm("KD", "kd", SINGLE, {"margin": 0.01}),
+    Algorithm("KD", "kd", SINGLE, settings="margin=0.01"),
     Algorithm("GPU SAP", "b3-sap", PARALLEL),
     Algorithm("GPU LBVH", "b3-lbvh", PARALLEL),
     Algorithm("GPU Grid", "b3-grid", PARALLEL),

@@ -16,8 +16,8 @@ from broadmark.paper.algorithms import (
     BY_NAME,
     MAX_SECONDS,
     PARALLEL,
-    SCENES,
     THREADS,
+    TITLES,
     is_gpu,
     table2,
 )
@@ -132,7 +132,7 @@ class Evidence:
     def _measurement(self, times: Times, scene: str, objects: int, name: str) -> Measurement | None:
         if self._lacks_gpu(name):
             return None
-        return times.measurements.get((scene, objects, BY_NAME[name].id))
+        return times.originals.get((scene, objects, BY_NAME[name].id))
 
     def _lacks_gpu(self, name: str) -> bool:
         return is_gpu(BY_NAME[name]) and self.cubes.device.endswith("(a CPU)")
@@ -148,11 +148,22 @@ class Evidence:
             n for n in names if not any(self._measurement(self.cubes, scene, s, n) for s in sizes)
         ]
         where = TITLES[scene]
+        incomparable = self._has_other_settings(never, scene)
+        if incomparable:
+            return incomparable
         if never:
             why = f"not in these results of {where}"
             return PartVerdict(Outcome.UNMEASURED, ", ".join(never), why)
         why = f"no size of {where} at which all have a time and the paper prints more than 0.00 s"
         return PartVerdict(Outcome.UNMEASURED, ", ".join(names), why)
+
+    def _has_other_settings(self, names: list[str], scene: str) -> PartVerdict | None:
+        """The verdict if the algorithms ran, but some never with the original's settings."""
+        ran = {(name, id_) for name, _, id_ in self.cubes.measurements}
+        others = [name for name in names if (scene, BY_NAME[name].id) in ran]
+        settings = " ".join(BY_NAME[name].settings for name in others) or "default parameters"
+        why = f"never with the original’s {settings} in {TITLES[scene]}"
+        return PartVerdict(Outcome.INCOMPARABLE, ", ".join(others), why) if others else None
 
     def _judged(
         self, subject: str, figures: str, ratios: list[Ratio], expected: Range, *names: str
@@ -262,7 +273,12 @@ class Evidence:
             verdict = PartVerdict(outcome, name, f"{figures} in {TITLES[scene]}")
             return self._comparable(verdict, name)
         why = f"neither a million objects in {TITLES[scene]} nor past the cap before"
-        return PartVerdict(Outcome.UNMEASURED, name, why)
+        verdict = PartVerdict(Outcome.UNMEASURED, name, why)
+        measured = any(
+            self._measurement(self.cubes, scene, objects, name)
+            for objects in self.cubes.sizes(scene)
+        )
+        return verdict if measured else self.missing(scene, name)
 
     def fails_above(self, name: str, limit: int) -> PartVerdict:
         """The algorithm fails with more than `limit` objects."""
@@ -270,7 +286,7 @@ class Evidence:
             return self.missing("Brownian", name)
         above = [
             (objects, measurement.status)
-            for (_, objects, id_), measurement in sorted(self.cubes.measurements.items())
+            for (_, objects, id_), measurement in sorted(self.cubes.originals.items())
             if id_ == BY_NAME[name].id and objects > limit and measurement.status != "timeout"
         ]
         if not above:
@@ -283,17 +299,15 @@ class Evidence:
     def extra_pairs(self, name: str, share: float) -> PartVerdict:
         """The algorithm reports non-overlapping pairs, `share` of the number of overlapping pairs."""
         algorithm = BY_NAME[name]
-        cases = self.cubes.original_settings if algorithm.settings else self.cubes.measurements
         shares = [
             measurement.extra_share
-            for (_, _, id_), measurement in cases.items()
+            for (_, _, id_), measurement in self.cubes.originals.items()
             if id_ == algorithm.id
             and measurement.status == "ok"
             and measurement.extra_share is not None
         ]
         if not shares and algorithm.settings:
-            settings = ", ".join(f"{key} {value:g}" for key, value in algorithm.settings.items())
-            why = f"no checked case with the original’s {settings}"
+            why = f"no checked case with the original’s {algorithm.settings}"
             return PartVerdict(Outcome.INCOMPARABLE, name, why)
         if not shares:
             return PartVerdict(Outcome.UNMEASURED, name, "no case with checked answers")
@@ -317,9 +331,6 @@ class Evidence:
                 parts.append(self._judged(name, figures, ratios, expected, name))
         why = "no results of equally many assorted objects and cubes"
         return parts or [PartVerdict(Outcome.UNMEASURED, name, why)]
-
-
-TITLES = {scene.name: scene.title for scene in SCENES}
 
 
 def _sizes(objects: list[int]) -> str:

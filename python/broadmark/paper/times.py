@@ -1,21 +1,28 @@
 """Our times by the paper's scenes, numbers of objects and algorithms, one case each.
 
 Among several numbers of threads and instruction sets, the case with the most threads and then the
-widest instruction set is used; cases with parameters, where there is none without. Only a complete case without wrong answers has a time; others have
-their status.
+widest instruction set is used; cases with parameters, where there is none without. Only a complete
+case without wrong answers has a time; others have their status. Where only spans of a recording were
+run, a time is the mean over their frames.
 """
 
 from __future__ import annotations
 
+import math
+import statistics
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
 from broadmark.errors import InputError
-from broadmark.paper.algorithms import ALGORITHMS, BY_ID, CAP_SECONDS, SCENES
+from broadmark.paper.algorithms import ALGORITHMS, BY_ID, CAP_SECONDS, SCENES, TITLES
 from broadmark.results import SELF_CHECK_FAMILY, Results, commit_name
 from broadmark.selection import RECORDING, best_variants, by_machine
+
+#: The column of a case's span of frames.
+SPAN = "span"
 
 SCENE_NAMES = [scene.name for scene in SCENES]
 
@@ -73,28 +80,42 @@ class Times:
             & (cases["object_type"] == object_type)
             & (cases["family"] != SELF_CHECK_FAMILY)
         )
-        self.measurements: dict[tuple[str, int, str], Measurement] = {}
-        self.families: dict[str, str] = {}  #: by algorithm
-        cases = cases[mask]
-        #: Cases with the settings of the paper's original that are no defaults here.
-        self.original_settings = {
-            self._cell(row): self._measurement(row, results.details[number])
-            for number, row in cases.iterrows()
-            if row["algorithm"] in BY_ID
-            and BY_ID[row["algorithm"]].settings
-            and results.details[number]["params"] == BY_ID[row["algorithm"]].settings
+        cases = _with_spans(cases[mask])
+        #: The spans of frames that were run, such as "100-199", by scene and objects; [""]: all.
+        self.spans: dict[tuple[str, int], list[str]] = {
+            size: sorted(spans.unique(), key=lambda span: int(span.split("-")[0] or 0))
+            for size, spans in cases.groupby(["scene", "objects"])[SPAN]
         }
-        plain = cases["params"] == ""
+        given = cases.apply(_given_parameters, axis=1) if len(cases) else cases["id"]
+        original = cases["algorithm"].map({id_: own.settings for id_, own in BY_ID.items()})
+        #: Of the paper's algorithms with the settings of the original.
+        self.originals = self._measurements(cases[given == original], results)
+        plain = given == ""
         has_plain = plain.groupby([cases[key] for key in [*RECORDING, "algorithm"]]).transform(
             "any"
         )
-        for number, row in best_variants(cases[plain | ~has_plain]).iterrows():
-            self.measurements[self._cell(row)] = self._measurement(row, results.details[number])
-            self.families[row["algorithm"]] = row["family"]
+        cases = cases[plain | ~has_plain]
+        self.measurements = self._measurements(cases, results)
+        self.families: dict[str, str] = dict(zip(cases["algorithm"], cases["family"]))
 
-    @staticmethod
-    def _cell(row: pd.Series) -> tuple[str, int, str]:
-        return row["scene"], row["objects"], row["algorithm"]
+    def _measurements(
+        self, cases: pd.DataFrame, results: Results
+    ) -> dict[tuple[str, int, str], Measurement]:
+        """By scene, objects and algorithm."""
+        found: dict[tuple[str, int, str], Measurement] = {}
+        if not len(cases):
+            return found
+        best = pd.concat(best_variants(of_span) for _, of_span in cases.groupby(SPAN))
+        for cell, rows in best.groupby(["scene", "objects", "algorithm"]):
+            details = [results.details[number] for number in rows.index]
+            parts = [self._measurement(row, own) for (_, row), own in zip(rows.iterrows(), details)]
+            if len(parts) < len(self.spans[cell[:2]]):
+                continue  # some spans were not run
+            times = [time for own in details for run in own["frames"]["total"] for time in run]
+            found[cell] = (
+                parts[0] if len(parts) == 1 else _joined(parts, list(rows["frames"]), times)
+            )
+        return found
 
     @staticmethod
     def _measurement(row: pd.Series, details: dict[str, Any]) -> Measurement:
@@ -160,6 +181,12 @@ class Times:
             if max(threads, default=1) > 1
             else []
         )
+        sizes: dict[str, list[str]] = defaultdict(list)
+        for (scene, objects), spans in self.spans.items():
+            if spans != [""]:
+                frames = " and ".join(span.replace("-", " to ") for span in spans)
+                sizes[f"{TITLES[scene]}, {{}} objects: frames {frames}"].append(f"{objects:,}")
+        lines += [line.format(" and ".join(of_line)) for line, of_line in sizes.items()]
         lines += [f"Commit {self.build}"] if self.build else []
         return lines + ([f"OpenCL device: {self.device}"] if self.device else [])
 
@@ -170,6 +197,51 @@ class Times:
             return ""
         name, _, about = self.devices[0].partition(" (")
         return name + (" (a CPU)" if ", CPU," in about else "")
+
+
+def _given_parameters(case: pd.Series) -> str:
+    """The parameters in a case's id: those that were given to the program."""
+    parts = case["id"].split("/")
+    variant = parts[parts.index(case["algorithm"]) :] if case["algorithm"] in parts else []
+    return " ".join(part for part in variant if "=" in part)
+
+
+def _with_spans(cases: pd.DataFrame) -> pd.DataFrame:
+    """The cases with a column SPAN, "" for all frames; of the sizes that were run as a whole, only
+    the cases that were."""
+    cases = cases.assign(
+        **{SPAN: cases["varied_params"].astype(str).str.extract(r"\bspan=(\d+-\d+)")[0].fillna("")}
+    )
+    is_whole = cases[SPAN] == ""
+    has_whole = is_whole.groupby([cases["scene"], cases["objects"]]).transform("any")
+    return cases[is_whole | ~has_whole]
+
+
+def _joined(parts: list[Measurement], frames: list[int], times: list[float]) -> Measurement:
+    """One measurement of several spans with these numbers of frames and all their times in
+    nanoseconds."""
+    total = sum(frames)
+
+    def mean(values: list[float]) -> float:
+        return sum(value * n for value, n in zip(values, frames)) / total
+
+    status = next((part.status for part in parts if part.status != "ok"), "ok")
+    known = [part.seconds for part in parts if part.seconds is not None]
+    seconds = mean(known) if status == "ok" else None
+    shares = [part.extra_share for part in parts if part.extra_share is not None]
+    # Noise is independent between spans.
+    variances = [(s * part.noise * n / total) ** 2 for s, part, n in zip(known, parts, frames)]
+    return Measurement(
+        status,
+        seconds,
+        max(part.threads for part in parts),
+        min(part.limit for part in parts),
+        mean(shares) if len(shares) == len(parts) else None,
+        math.sqrt(sum(variances)) / seconds if seconds else 0,
+        all(part.repeated for part in parts),
+        statistics.median(times) / 1e9 if times else math.nan,
+        mean([part.spike_share for part in parts]),
+    )
 
 
 def _spike_share(repetitions: list[Any]) -> float:
