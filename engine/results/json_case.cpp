@@ -185,6 +185,8 @@ Json caseToJson(const CaseResult& result) {
     json["differences"].push_back(toJson(difference));
   }
   json["counters"] = result.counters;
+  if (result.ageing)
+    json["ageing"] = {{"early", result.ageing->early}, {"late", result.ageing->late}};
   json["setup"] = result.setup;
   json["summary"]["ci95"] =
       summary.ci95 ? Json{summary.ci95->low, summary.ci95->high} : Json(nullptr);
@@ -224,6 +226,11 @@ CaseResult caseFrom(const JsonFields& json) {
     result.allowed_extra_count = json.integer<std::uint64_t>("allowed_extra");
   }
   if (json.has("counters")) json.read("counters", result.counters);
+  if (json.has("ageing")) {
+    const JsonFields ageing = json.object("ageing");
+    ageing.read("early", result.ageing.emplace().early);
+    ageing.read("late", result.ageing->late);
+  }
   if (json.has("setup")) json.read("setup", result.setup);
   readFrames(json, result);
   if (json.has("conditions")) {  // since results/2

@@ -101,6 +101,8 @@ Results everything() {
                        .allowed_extra_pairs = {{4, 5}},
                        .invalid_pairs = {{1, 1}, {9, 0xFFFFFFFF}, {0, 1}}}};
   full.setup = {{"kernel_build_ns", 77}};
+  full.ageing = {{{"private_bytes", 4096}, {"tests", 1.5}},
+                 {{"private_bytes", 8192}, {"tests", 3}}};
   full.peak_bytes = 12345;
   full.repetitions = {{.initialize_ns = 5, .frames = {times(1000), times(2000)}},
                       {.initialize_ns = 6, .frames = {times(3000)}}};
@@ -277,8 +279,9 @@ TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
     // Without conditions, it is read as results/1.
-    const std::set<std::string> optional = {"peak_bytes", "counters",  "setup",  "device", "plugin",
-                                            "conditions", "processor", "bodies", "answer"};
+    const std::set<std::string> optional = {"peak_bytes", "counters",   "setup",     "device",
+                                            "plugin",     "conditions", "processor", "bodies",
+                                            "answer",     "ageing"};
     if (optional.contains(item.key()) || item.key() == "summary") continue;  // derived
     Json json = whole;
     json["cases"][0].erase(item.key());
@@ -427,7 +430,7 @@ void eachKey(const Json& json, Visit&& visit) {
   for (const auto& [key, value] : json.items()) {
     if (json.is_object()) visit(key);
     if (key != "params" && key != "counters" && key != "setup" && key != "source" &&
-        key != "swept" && key != "reading") {
+        key != "swept" && key != "reading" && key != "early" && key != "late") {
       if (value.is_structured()) eachKey(value, visit);
     }
   }

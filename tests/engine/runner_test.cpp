@@ -233,6 +233,18 @@ TEST(Runner, WhatIsCountedOnceIsNoFrameCounter) {
   EXPECT_TRUE(result.counters.empty());
 }
 
+TEST(Runner, AgeingIsCountedInTheFirstAndTheLastTenth) {
+  const Case test_case = caseOf({.count_work = [](std::uint32_t frame) { return frame; }});
+  for (const std::uint32_t frames : {99U, 109U}) {
+    ChainSource source(4, frames);
+    const CaseResult result = runCase(test_case, source, {}, 2);
+    ASSERT_EQ(result.ageing.has_value(), frames == 109);
+    if (!result.ageing) continue;
+    EXPECT_EQ(result.ageing->early, (std::map<std::string, double>{{"work", 5.5}}));
+    EXPECT_EQ(result.ageing->late, (std::map<std::string, double>{{"work", 104.5}}));
+  }
+}
+
 TEST(Runner, SceneWithoutFramesOrBodies) {
   for (const auto& [objects, frames] :
        std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 3}, {3, 0}, {0, 0}}) {

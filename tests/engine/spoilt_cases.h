@@ -46,6 +46,7 @@ struct Behaviour {
   float margin = 0;
   AlgorithmTraits traits = {};
   std::function<void()> on_destroy = [] {};  // only after initialisation
+  std::function<std::uint64_t(std::uint32_t frame)> count_work = {};
 };
 
 /// Brute force with a given behaviour.
@@ -72,6 +73,9 @@ class Spoilt final : public BoxBroadPhase {
     behaviour_.on_update(frame_);
   }
   void visitSetup(const CounterVisitor& visit) const override { visit("tables", 5); }
+  void visitCounters(const CounterVisitor& visit) const override {
+    if (behaviour_.count_work) visit("work", behaviour_.count_work(frame_));
+  }
 
  private:
   void findPairs() override {

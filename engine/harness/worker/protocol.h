@@ -25,7 +25,9 @@
 //                                                                 shared: the pairs
 //   events                                                        began, ended: their numbers
 //                                                                 shared: the pairs, in this order
-//   counters, setup                                               counts {}
+//   counters                                                      counts {}, private_bytes (null:
+//                                                                 unknown): growth since start
+//   setup                                                         counts {}
 //   structure                                                     boxes, lines, tests: their
 //                                                                 numbers; left_out
 //                                                                 shared: these, in this order
@@ -98,8 +100,8 @@ Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offs
 CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
                            const SceneInfo& scene);
 
-/// An integer of a message. Throws HostError for other values and those out of range, whose
-/// conversion by the JSON library is undefined.
+/// An integer of a message. Throws HostError for other values and those out of range: the JSON
+/// library's conversion of these is undefined.
 template <class Integer>
 Integer integerOf(const Json& value) {
   try {

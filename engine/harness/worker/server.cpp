@@ -24,6 +24,16 @@ namespace {
 /// Peak resident memory of this process.
 std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
 
+/// Resident memory of this process that it does not share. Read in microseconds.
+std::uint64_t privateBytes() {
+  std::uint64_t size = 0;
+  std::uint64_t resident = 0;
+  std::uint64_t shared = 0;  // files and shared memory; all in pages
+  std::ifstream("/proc/self/statm") >> size >> resident >> shared;
+  return (resident - std::min(shared, resident)) *
+         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
 /// Lets the OOM killer pick the worker, not its parent.
 void raiseOomScore() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
@@ -115,6 +125,7 @@ class Server {
     changed_.resize(boxes_.size());  // outside the pass: not the algorithm's memory
     changed_boxes_.resize(boxes_.size());
     if (!measured_) peak_before_ = peakBytes();
+    private_before_ = privateBytes();
     filter_ = scene.filter;
     filter_changes_ = scene.filter_changes;
     Frame first{0, boxes_, std::span<const std::uint32_t>()};
@@ -180,7 +191,13 @@ class Server {
     return offset;
   }
 
-  Json counters(const Json& /*message*/) { return {{"counts", startedExecutor().counters()}}; }
+  Json counters(const Json& /*message*/) {
+    const std::uint64_t now = privateBytes();
+    const bool is_known = !executor().testCase().algorithm.traits.self_timed;
+    return {
+        {"counts", startedExecutor().counters()},
+        {"private_bytes", is_known ? Json(now - std::min(private_before_, now)) : Json(nullptr)}};
+  }
   Json setup(const Json& /*message*/) { return {{"counts", startedExecutor().setup()}}; }
 
   Json structure(const Json& /*message*/) {
@@ -231,6 +248,7 @@ class Server {
   std::optional<InProcessExecutor> executor_;
   bool started_ = false;
   bool measured_ = false;
+  std::uint64_t private_before_ = 0;  ///< before this pass
   std::optional<std::uint64_t> peak_before_;
   std::optional<std::uint64_t> peak_growth_;
 };

@@ -85,8 +85,9 @@ class Connection {
       throw InputError(fmt::format("{}: cannot serve as a worker process: {}", program,
                                    endText(process_.wait(kGracePeriod))));
     }
-    throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
-                                 program, version, worker::kProtocolVersion));
+    throw InputError(
+        fmt::format("{}: uses version {} of the worker protocol, this program version {}", program,
+                    version, worker::kProtocolVersion));
   }
 
   Json call(const Json& message, Seconds limit) {
@@ -132,7 +133,8 @@ class Connection {
   [[noreturn]] void fail() {
     const int status = process_.wait(kGracePeriod);
     if (options_.valgrind && WIFSIGNALED(status) && WTERMSIG(status) == SIGILL) {
-      throw UnsupportedError("an illegal instruction, or one that valgrind does not know (SIGILL)");
+      throw UnsupportedError(
+          "an illegal instruction, or one that valgrind does not support (SIGILL)");
     }
     throw HostError(endText(status));
   }
@@ -215,8 +217,15 @@ class WorkerProcess final : public CaseExecutor {
     return {{&answer_run_, 1}, {&ended_run_, 1}};
   }
 
-  Counts counters() override { return countsOf("counters"); }
-  Counts setup() override { return countsOf("setup"); }
+  Counts counters() override {
+    const Json answer = call("counters");
+    report_.private_bytes.reset();
+    if (!options_.valgrind && answer.value("private_bytes", Json()).is_number()) {
+      report_.private_bytes = worker::integerOf<std::uint64_t>(answer.at("private_bytes"));
+    }
+    return countsOf(answer);
+  }
+  Counts setup() override { return countsOf(call("setup")); }
   std::string validate() override { return call("validate").at("broken").get<std::string>(); }
 
   RecordedDrawing structure() override {
@@ -269,9 +278,8 @@ class WorkerProcess final : public CaseExecutor {
   /// A call without arguments.
   Json call(const char* name) { return connection_->call({{"call", name}}); }
 
-  Counts countsOf(const char* call_name) {
+  static Counts countsOf(const Json& answer) {
     Counts counts;
-    const Json answer = call(call_name);
     for (const auto& [counter, count] : answer.at("counts").items()) {
       counts[counter] = worker::integerOf<std::uint64_t>(count);
     }

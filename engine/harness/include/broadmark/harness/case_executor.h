@@ -32,6 +32,8 @@ struct StepResult {
 struct PassReport {
   std::optional<std::uint64_t> heap_bytes;  ///< allocated and not freed after the last stop()
   std::optional<std::uint64_t> peak_bytes;  ///< growth of peak memory by the first pass
+  /// Growth of the process's private memory from start() to the last counters().
+  std::optional<std::uint64_t> private_bytes;
   ProcessorCounts processor;  ///< over the four phases of all frames; empty before stop()
   bool pinned = false;        ///< each thread was bound to its own core
 };

@@ -56,6 +56,13 @@ struct Population {
   std::uint64_t max = 0;
 };
 
+/// Means over the first and the last tenth of a pass's frames: the algorithm's counters, and
+/// "private_bytes", as PassReport::private_bytes. In a structure that ages well they agree.
+struct Ageing {
+  std::map<std::string, double> early;
+  std::map<std::string, double> late;
+};
+
 struct CaseResult {
   std::string id;
   RecordingReference recording;
@@ -90,6 +97,8 @@ struct CaseResult {
   std::optional<std::uint64_t> peak_bytes;   ///< as PassReport::peak_bytes
   /// The algorithm's work counters, mean per frame.
   std::map<std::string, double> counters;
+  /// Of a first pass with at least 100 frames.
+  std::optional<Ageing> ageing;
   /// Counters of the first initialisation.
   std::map<std::string, std::uint64_t> setup;
 
