@@ -101,13 +101,26 @@ function(broadmark_registry target file macro folder)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
 
-# Adds the public headers under include/, except those after EXCEPT: they are installed, and the target
+# Adds the public headers under include/, except those after EXCEPT. They are installed, except those
+# after INTERNAL, which are for other rooms, not for plug-ins and embedders. The target
 # all_verify_interface_header_sets compiles each alone.
 function(broadmark_public_headers target)
-  cmake_parse_arguments(ARG "" "" EXCEPT ${ARGN})
+  cmake_parse_arguments(ARG "" "" "EXCEPT;INTERNAL" ${ARGN})
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS include/*.h)
   foreach(name IN LISTS ARG_EXCEPT)
     list(FILTER headers EXCLUDE REGEX "/${name}\\.h$")
   endforeach()
+  set(internal "")
+  foreach(name IN LISTS ARG_INTERNAL)
+    set(header ${headers})
+    list(FILTER header INCLUDE REGEX "/${name}\\.h$")
+    list(APPEND internal ${header})
+    list(REMOVE_ITEM headers ${header})
+  endforeach()
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
+  if(internal)
+    add_library(${target}_internal INTERFACE)
+    target_link_libraries(${target}_internal INTERFACE ${target})
+    target_sources(${target}_internal INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${internal})
+  endif()
 endfunction()
