@@ -6,6 +6,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/scenes/simulation.h"
 #include "e2e/end_to_end.h"
+#include "parts.h"
 
 namespace broadmark::tests {
 namespace {
@@ -59,7 +60,12 @@ TEST_F(Help, OfAllHasThatOfEveryCommand) {
 }
 
 TEST_F(Help, Version) {
-  EXPECT_THAT(run({"--version", "--verbose"}).out, HasSubstr("\n  libbullet-dev "));
+  const std::string versions = run({"--version", "--verbose"}).out;
+  EXPECT_THAT(versions, HasSubstr("\n  libbullet-dev "));
+  EXPECT_THAT(versions, HasSubstr("\n  nlohmann-json3-dev "));
+  EXPECT_EQ(versions.find("\n  libode-dev ") != std::string::npos, parts::kOde.included);
+  EXPECT_EQ(versions.find("\n  libcgal-dev ") != std::string::npos, parts::kCgal.included);
+  EXPECT_EQ(versions.find("\n  libimgui-dev ") != std::string::npos, parts::kInspector.included);
   EXPECT_THAT(linesOf(run({"--version", "--verbose"}).out),
               AllOf(Contains(StartsWith("commit: ")), Contains(StartsWith("compiler: "))));
   expectRefusal({"--verbose"}, {"--verbose", "--version"});
