@@ -59,8 +59,8 @@ double busyShare(const BusyShares& busy, int core) {
   return found == busy.end() ? 0 : found->second;
 }
 
-int availableCores(const SystemFolders& folders) {
-  auto cores = static_cast<double>(usableCores().size());
+int availableCores(const SystemFolders& folders, std::size_t usable) {
+  auto cores = static_cast<double>(usable);
   std::ifstream groups(folders.proc / "self/cgroup");
   for (std::string line; std::getline(groups, line);) {
     if (!line.starts_with("0::/")) continue;  // another version

@@ -67,6 +67,19 @@ TEST(Cores, ThoseBeyondTheQuotaAreNotAvailable) {
   EXPECT_EQ(availableCores(system.folders()), 1);
 }
 
+TEST(Cores, AQuotaOfALargeMachineIsRoundedUp) {
+  MadeUpSystem system;
+  system.write("proc/self/cgroup", "0::/job\n");
+  EXPECT_EQ(availableCores(system.folders(), 64), 64);
+  system.write("sys/fs/cgroup/job/cpu.max", "6400000 100000\n");
+  EXPECT_EQ(availableCores(system.folders(), 64), 64);
+  EXPECT_EQ(availableCores(system.folders(), 48), 48);  // by the affinity mask
+  system.write("sys/fs/cgroup/job/cpu.max", "3250000 100000\n");
+  EXPECT_EQ(availableCores(system.folders(), 64), 33);
+  system.write("sys/fs/cgroup/cpu.max", "1600000 100000\n");  // of a container
+  EXPECT_EQ(availableCores(system.folders(), 64), 16);
+}
+
 TEST(Cores, TheQuietestAreChosen) {
   const std::vector<int> usable = {0, 1, 2, 3};
   EXPECT_THAT(quietestCores(2, usable, {}, {}), ElementsAre(0, 1));

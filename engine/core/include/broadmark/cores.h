@@ -19,9 +19,9 @@ struct SystemFolders {
 /// The system's numbers of the cores that the calling thread may use, ascending.
 std::vector<int> usableCores();
 
-/// How many cores this process can keep busy: the usable ones, at most as many as the CPU quota of
+/// How many cores this process can keep busy: those `usable`, at most as many as the CPU quota of
 /// its control groups (cgroup v2, as for containers), rounded up.
-int availableCores(const SystemFolders& = {});
+int availableCores(const SystemFolders& = {}, std::size_t usable = usableCores().size());
 
 /// A core's busy and total time since the system started, in ticks.
 struct CoreTicks {
