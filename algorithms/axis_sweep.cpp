@@ -149,7 +149,7 @@ class Sweep final : public bt32BitAxisSweep3 {
         const Edge& edge = m_pEdges[axis][i];
         if (i > 1 && edge.m_pos < m_pEdges[axis][i - 1].m_pos) return "edges not sorted";
         const bool is_max = edge.IsMax() != 0;
-        if (edgeOf(edge, axis) != i) return "a body does not know its edge";
+        if (edgeOf(edge, axis) != i) return "a body has a wrong edge index";
         const Aabb& box = boxes[edge.m_handle - 1];
         if (edge.m_pos != position(box, edge.m_handle - 1, axis, is_max)) {
           return "an edge is not where its box ends";

@@ -81,7 +81,8 @@ class RTree final : public MovedBoxes {
 
   [[nodiscard]] std::string validate() const override {
     const auto present = std::ranges::count_if(boxes(), std::not_fn(isEmpty));
-    return std::cmp_equal(tree_.size(), present) ? "" : "the tree has not one value for each body";
+    if (std::cmp_equal(tree_.size(), present)) return "";
+    return "the number of values in the tree is not that of bodies";
   }
 
  private:
@@ -156,11 +157,11 @@ std::vector<Algorithm> variants() {
                        /*incremental=*/false),
       variantOf<RTree>(
           family, "boost-rtree",
-          "Boost.Geometry's R-tree, from which the bodies that moved are taken and put back", {},
+          "Boost.Geometry's R-tree, from which moved bodies are removed and inserted again", {},
           /*incremental=*/true)};
-  all[0].description.optimisations = "packed at once";
+  all[0].description.optimisations = "bulk loading";
   all[1].traits.incremental = true;
-  all[1].description.optimisations = "tree kept from frame to frame";
+  all[1].description.optimisations = "persistent tree";
   return all;
 }
 

@@ -166,7 +166,7 @@ class BulletOpenCl final : public BroadPhase {
   [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
 
   void visitCounters(const CounterVisitor& visit) const override {
-    visit("large_bodies", static_cast<std::uint64_t>(sizes_.large.size()));
+    visit("large bodies", static_cast<std::uint64_t>(sizes_.large.size()));
   }
   void visitSetup(const CounterVisitor& visit) const override {
     visit("kernel_build_ns", static_cast<std::uint64_t>(build_ns_));

@@ -105,14 +105,15 @@ std::vector<Algorithm> variants() {
                  .changing_worlds = ChangingWorlds::compacted,
                  .instance_per_world = true},
       .description = {.principle = "tree",
-                      .optimisations = "wide nodes, tested by vectors; refitted",
+                      .optimisations = "wide nodes, SIMD tests, refitting",
                       .time = "O(n log n + k)",
                       .space = "O(n + k)",
                       .source = "Broadmark; Wald, Benthin and Boulos 2008; Wald 2007"}};
-  return {variantOf<Bvh8>(family, "bvh8", "the library's tree for queries: wide nodes, refitted",
-                          {.vectorised = true}),
-          variantOf<Bvh8>(family, "bvh8-mt", "the library's tree for queries, on several threads",
-                          {.parallel = true, .vectorised = true})};
+  return {
+      variantOf<Bvh8>(family, "bvh8", "query tree of Broadmark's library: wide nodes, refitted",
+                      {.vectorised = true}),
+      variantOf<Bvh8>(family, "bvh8-mt", "query tree of Broadmark's library, on several threads",
+                      {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::bvh8

@@ -72,12 +72,11 @@ class Columns final : public PairBroadPhase {
            &copy_cost_, 1, 1'000'000});
     visit({"split_threshold", "pair tests per box above which a column is split", &split_threshold_,
            1, 1'000'000'000});
-    visit({"max_brute_force", "number of boxes up to which all pairs are tested, on vectors",
+    visit({"max_brute_force", "number of boxes up to which all pairs are tested, with SIMD",
            &max_brute_force_, 0, 1'000'000});
-    visit(
-        {"min_share_us",
-         "work that pays for a thread, in estimated microseconds: below it, fewer threads are used",
-         &min_share_us_, 0, 1'000'000});
+    visit({"min_share_us",
+           "minimum work of a thread, in estimated microseconds: with less, fewer threads are used",
+           &min_share_us_, 0, 1'000'000});
   }
 
   [[gnu::cold]] void initialize(const SceneInfo& scene, const Frame& first,

@@ -87,8 +87,7 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"margin", "what a leaf is enlarged by when its box has left it, in world units",
-           &margin_, 0, 1e6});
+    visit({"margin", "margin added to a leaf that its box left, in world units", &margin_, 0, 1e6});
   }
 
   /// The maximum extent of a leaf beyond its box.
@@ -145,7 +144,7 @@ class Dbvt final : public BulletBroadPhase {
   [[nodiscard]] std::string validate() const override {
     for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
       if ((proxies_[body] == nullptr) != isEmpty(boxes()[body]))
-        return "a body came or went unseen";
+        return "a body appeared or disappeared unnoticed";
       if (proxies_[body] == nullptr) continue;
       if (!contains(leafOf(body), boxes()[body])) return "a box has left its leaf";
       if (reachesTooFar(body)) return "a leaf reaches beyond the margin";
@@ -321,15 +320,15 @@ std::vector<Algorithm> variants() {
                  .max_objects = 0x7FFF'FFFE,
                  .exclusive = std::string(kBulletTreeMargin)},
       .description = {.principle = "tree",
-                      .optimisations = "incremental, enlarged leaves, a tree for bodies at rest",
+                      .optimisations = "incremental, fat leaves, separate tree for bodies at rest",
                       .time = "O(m log n + k), m bodies that move",
                       .space = "O(n + k)",
                       .source = "Bullet, btDbvtBroadphase; van den Bergen 1997"}};
   return {variantOf<Dbvt>(family, "dbvt-f",
-                          "Bullet's dynamic AABB trees, each body looked up as it moves (forward)",
-                          {}, /*deferred=*/false),
+                          "Bullet's dynamic AABB trees, queried for each moved body (forward)", {},
+                          /*deferred=*/false),
           variantOf<Dbvt>(family, "dbvt-d",
-                          "Bullet's dynamic AABB trees, descended once a frame (deferred)", {},
+                          "Bullet's dynamic AABB trees, traversed once per frame (deferred)", {},
                           /*deferred=*/true)};
 }
 

@@ -146,7 +146,7 @@ class Embree final : public BoxBroadPhase {
   void enlargeBounds() {
     constexpr float kMargin = 16 * std::numeric_limits<float>::epsilon();
     const float largest = largestCoordinate(boxes());
-    if (largest > kMaxBound) throw UnsupportedError("queries beyond the range of Embree");
+    if (largest > kMaxBound) throw UnsupportedError("coordinates beyond the range of Embree");
     margin_ = kMargin * largest;
   }
 
@@ -292,17 +292,17 @@ std::vector<Algorithm> variants() {
                                        .library_allocates = true,
                                        .changing_worlds = ChangingWorlds::compacted},
                             .description = {.principle = "tree",
-                                            .optimisations = "wide nodes, tested by vectors",
+                                            .optimisations = "wide nodes, SIMD tests",
                                             .time = "O(n log n + k)",
                                             .space = "O(n + k)",
                                             .source = "Embree, rtcCollide; Wald et al. 2014"}};
   return {variantOf<Embree>(
               family, "embree-morton",
-              "Embree's bounding volume hierarchy along a Morton curve, from scratch every frame",
+              "Embree's bounding volume hierarchy along a Morton curve, rebuilt every frame",
               {.parallel = true}, RTC_BUILD_QUALITY_LOW),
           variantOf<Embree>(
               family, "embree-sah",
-              "Embree's bounding volume hierarchy by surface area, from scratch every frame",
+              "Embree's bounding volume hierarchy by surface area heuristic, rebuilt every frame",
               {.parallel = true}, RTC_BUILD_QUALITY_MEDIUM)};
 }
 

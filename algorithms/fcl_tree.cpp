@@ -221,15 +221,15 @@ std::vector<Algorithm> variants() {
                  .changing_worlds = ChangingWorlds::compacted,
                  .instance_per_world = true},
       .description = {.principle = "tree",
-                      .optimisations = "tree kept from frame to frame",
+                      .optimisations = "persistent tree",
                       .time = "O(m log n + n + k), m bodies that move",
                       .space = "O(n + k)",
                       .source = "FCL, DynamicAABBTreeCollisionManager; Pan et al. 2012"}};
   Algorithm array = variantOf<Fcl<Array>>(family, "fcl-array",
-                                          "FCL's dynamic tree of boxes, its nodes in an array");
+                                          "FCL's dynamic tree of boxes, with nodes in an array");
   array.traits.library_leaks = true;
   return {variantOf<Fcl<Nodes>>(family, "fcl",
-                                "FCL's dynamic tree of boxes, of nodes that point to each other"),
+                                "FCL's dynamic tree of boxes, with nodes linked by pointers"),
           array};
 }
 

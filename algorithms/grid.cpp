@@ -350,7 +350,7 @@ std::string Grid::validate() const {
                                 bodies_.begin() + static_cast<std::ptrdiff_t>(end));
     std::ranges::sort(found);
     std::ranges::sort(expected[cell]);
-    if (found != expected[cell]) return "a cell does not hold what touches it";
+    if (found != expected[cell]) return "a cell does not hold the bodies that touch it";
     for (std::size_t i = begin; i < end; ++i) {
       const Aabb& box = boxes_[bodyId(bodies_[i])];
       if (arrays_.box(i) != merged(box, box))

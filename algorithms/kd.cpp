@@ -353,12 +353,12 @@ void Kd::visitCounters(const CounterVisitor& visit) const {
     skipped += worker.searcher.skippedSubtrees();
     boxes_tested += worker.searcher.boxesTested() + worker.static_query.boxes_tested;
   }
-  visit("moved bodies", moved_count_);
+  visit("moves", moved_count_);
   visit("bodies at rest", static_bvh_.size());
-  visit("boxes looked at", boxes_tested);
+  visit("boxes tested", boxes_tested);
   tree_.visitCounters(visit);
   visit("subtrees skipped in searches", skipped);
-  visit("pairs kept", retained);
+  visit("pairs retained", retained);
 }
 
 std::string Kd::validate() const {

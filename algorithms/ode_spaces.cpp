@@ -172,7 +172,7 @@ std::vector<Algorithm> variants() {
                       .space = "O(n² + k)",
                       .source = "ODE, dHashSpace"};
   Algorithm sap =
-      variantOf<Sap>(family, "ode-sap", "ODE's sweep-and-prune space, sorted by radix every frame");
+      variantOf<Sap>(family, "ode-sap", "ODE's sweep-and-prune space, radix-sorted every frame");
   sap.description = {.principle = "sorting",
                      .optimisations = "radix sort",
                      .time = "O(n² + k), O(n^5/3 + k) if spread evenly",

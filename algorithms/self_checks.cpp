@@ -49,7 +49,7 @@ std::vector<Algorithm> variants() {
                             .description = {.principle = "none",
                                             .time = "O(1)",
                                             .space = "O(1)",
-                                            .source = "the original Broadmark"}};
+                                            .source = "The original Broadmark"}};
   return {variantOf<None>(family, "none", "does nothing: shows the overhead of the harness"),
           variantOf<TimeValidator>(family, "time-validator",
                                    "waits a known time in each phase: checks the clock")};

@@ -360,7 +360,7 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
     visit("searches", searches_);
     return;
   }
-  visit("looks", grid_->work().cell_queries);
+  visit("cell queries", grid_->work().cell_queries);
   visit("tests", grid_->work().tests);
   visit("cell changes", grid_->work().cell_changes);
   visit("pairs begun", began_.size());
@@ -393,7 +393,7 @@ std::vector<Algorithm> variants() {
                       .source = "Broadmark; Ulrich 2000; Ericson 2005, 7.2; Verlet 1967"}};
   return {variantOf<Tide>(
       family, "tide",
-      "loose grid queried around moving bodies; candidates if they creep; full search if many move",
+      "loose grid queried around moving bodies; candidate pairs if slow; full search if many move",
       {.vectorised = true})};
 }
 

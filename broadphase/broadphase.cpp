@@ -69,11 +69,12 @@ Isa isaOf(InstructionSet set) {
   return matrix;
 }
 
-/// Whether a value is one of an enum's, whose last one is `last`.
+/// Throws unless `value` is a value of its enum, of which `last` is the last.
 template <class Enum>
 void checkChoice(Enum value, Enum last, const char* name) {
   if (static_cast<int>(value) < 0 || value > last) {
-    throw std::invalid_argument(name + (": no value " + std::to_string(static_cast<int>(value))));
+    throw std::invalid_argument(name +
+                                (": invalid value " + std::to_string(static_cast<int>(value))));
   }
 }
 
@@ -104,8 +105,7 @@ class Use {
   Use& operator=(const Use&) = delete;
 
   [[noreturn]] static void throwInUse() {
-    throw std::logic_error(
-        "a call during another one of the same object, from another thread or a job");
+    throw std::logic_error("a concurrent call on the same object, from another thread or a job");
   }
 
  private:
@@ -192,8 +192,8 @@ class BroadPhase::Implementation {
   std::span<const Pair> answer(Answer kind, const PairRun& run) const {
     if (in_use_.load(std::memory_order_acquire)) Use::throwInUse();
     if (options_.answer != kind) {
-      throw std::logic_error(kind == Answer::pairs ? "the answer is events: began() and ended()"
-                                                   : "the answer is pairs()");
+      throw std::logic_error(kind == Answer::pairs ? "the answer is events: use began() and ended()"
+                                                   : "the answer is pairs: use pairs()");
     }
     return published(run);
   }
@@ -347,10 +347,10 @@ void BroadPhase::Implementation::update(const Boxes& boxes,
                                 std::to_string(kMaxBodies) + " are supported");
   }
   if (boxes.count > 0 && (boxes.min == nullptr || boxes.max == nullptr)) {
-    throw std::invalid_argument("boxes: a null pointer");
+    throw std::invalid_argument("boxes: must not be null");
   }
   if (boxes.count > 1 && boxes.stride < 3 * sizeof(float)) {
-    throw std::invalid_argument("boxes: a stride of less than three floats");
+    throw std::invalid_argument("boxes: the stride must be at least three floats");
   }
   const BoxReader reader(boxes.min, boxes.max, boxes.stride, options_.margin);
   if (listed && options_.changes == Changes::trusted) {
@@ -592,7 +592,7 @@ void BroadPhase::Implementation::save(std::vector<std::byte>& state) const {
   const Use use(in_use_);
   if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
   if (filters_changed_ && has_answer_) {
-    throw std::logic_error("save: filters have been set since the last update");
+    throw std::logic_error("save: filters have been set since the last update: update first");
   }
   StateHeader header;
   header.answer = static_cast<std::uint32_t>(options_.answer);
@@ -658,7 +658,7 @@ void BroadPhase::Implementation::restore(std::span<const std::byte> state) {
     if (!pairs.empty()) std::memcpy(pairs.data(), events[i], pairs.size() * sizeof(Pair));
     for (const broadmark::Pair pair : pairs) {
       if (pair.a >= pair.b || pair.b >= kMaxBodies)
-        throw std::invalid_argument("state: not a pair");
+        throw std::invalid_argument("state: invalid pair");
     }
     const PairRun run = pairs;
     saved[i].assign({&run, 1});
@@ -692,7 +692,7 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
 
 BroadPhase::Implementation& BroadPhase::implementation() const {
-  if (implementation_ == nullptr) throw std::logic_error("use of a broad phase moved from");
+  if (implementation_ == nullptr) throw std::logic_error("use of a moved-from BroadPhase");
   return *implementation_;
 }
 

@@ -88,7 +88,7 @@ bm_status fail(bm_status status, const char* message) noexcept {
   } catch (const std::exception& error) {
     return fail(BM_FAILED, error.what());
   } catch (...) {
-    return fail(BM_FAILED, "an exception that is no std::exception");
+    return fail(BM_FAILED, "an exception that is not a std::exception");
   }
 }
 
@@ -105,7 +105,7 @@ bm_status guarded(Call call) noexcept {
 /// Throws for a null pointer.
 template <class T>
 T& deref(T* pointer, const char* name) {
-  if (pointer == nullptr) throw std::invalid_argument(name + std::string(": a null pointer"));
+  if (pointer == nullptr) throw std::invalid_argument(name + std::string(": must not be null"));
   return *pointer;
 }
 
@@ -247,7 +247,7 @@ bm_status bm_save(const bm_broadphase* broadphase, void* bytes, size_t capacity,
     deref(size, "size") = state.size();
     too_small = state.size() > capacity;
     if (too_small) return;
-    if (bytes == nullptr) throw std::invalid_argument("bytes: a null pointer");
+    if (bytes == nullptr) throw std::invalid_argument("bytes: must not be null");
     std::memcpy(bytes, state.data(), state.size());
   });
   return too_small ? fail(BM_BUFFER_TOO_SMALL, "bytes: smaller than the state") : status;
@@ -255,7 +255,7 @@ bm_status bm_save(const bm_broadphase* broadphase, void* bytes, size_t capacity,
 
 bm_status bm_restore(bm_broadphase* broadphase, const void* bytes, size_t size) {
   return guarded([&] {
-    if (size > 0 && bytes == nullptr) throw std::invalid_argument("bytes: a null pointer");
+    if (size > 0 && bytes == nullptr) throw std::invalid_argument("bytes: must not be null");
     deref(broadphase, "broadphase")
         .broad_phase.restore({static_cast<const std::byte*>(bytes), size});
   });

@@ -225,7 +225,7 @@ constexpr ColourMode kModes[] = {
      colourByCorrectness},
     {"motion", "Moving and static", "bodies whose box has changed since the previous frame",
      colourByMotion},
-    {"changes", "Changed now", "bodies that appeared or moved since the previous frame",
+    {"changes", "Appeared or moved", "bodies that appeared or moved since the previous frame",
      colourByChange},
     {"layers", "Layer", "the layer of each body; beyond eight the colours repeat", colourByLayer},
     {"size", "Size", "longest edge of each body, in steps of equal ratio", colourBySize},

@@ -233,7 +233,9 @@ class Osmesa final : public OffscreenContext {
     const int attributes[] = {kFormat,       GL_RGBA, kDepthBits,    24, kProfile, kCoreProfile,
                               kMajorVersion, 3,       kMinorVersion, 3,  0};
     context_ = create(attributes, nullptr);
-    if (context_ == nullptr) throw RenderError("OSMesaCreateContextAttribs gave no 3.3 context");
+    if (context_ == nullptr) {
+      throw RenderError("OSMesaCreateContextAttribs did not create an OpenGL 3.3 context");
+    }
     if (make_current_(context_, buffer_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
       destroy_(context_);
       throw RenderError("OSMesaMakeCurrent failed");

@@ -10,7 +10,7 @@ namespace broadmark {
 namespace {
 
 constexpr GLsizei kTexelsPerPrimitive = 2;
-constexpr GLsizei kPrimitivesPerRow = 1024;  // of the texture, whose sides are limited
+constexpr GLsizei kPrimitivesPerRow = 1024;  // the sides of a texture are limited
 constexpr GLsizei kRowTexels = kTexelsPerPrimitive * kPrimitivesPerRow;
 
 std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t requested) {

@@ -167,7 +167,7 @@ void requireBakeable(Simulation& simulation, const std::vector<fs::path>& paths)
   if (!input.empty()) reserved.insert(sidecar_of(input));
   for (const fs::path& path : paths) {
     if (reserved.insert(sidecar_of(path)).second) continue;
-    throw InputError(fmt::format("{}: would overwrite {}: choose another directory", path.string(),
+    throw InputError(fmt::format("{}: would overwrite {}: choose another folder", path.string(),
                                  input.empty() ? "the sidecar of another recording"
                                                : "its own source, or the sidecar of that"));
   }

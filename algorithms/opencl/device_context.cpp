@@ -57,7 +57,7 @@ cl::Device withThreads(cl::Device device, int threads) {
   try {
     device.createSubDevices(by_counts, &parts);
   } catch (const cl::Error& error) {
-    throw UnsupportedError(fmt::format("cannot keep {} to {} of its {} threads (OpenCL error {})",
+    throw UnsupportedError(fmt::format("cannot limit {} to {} of its {} threads (OpenCL error {})",
                                        trimmed(device.getInfo<CL_DEVICE_NAME>()), threads, units,
                                        error.err()));
   }

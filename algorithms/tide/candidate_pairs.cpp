@@ -11,7 +11,7 @@
 namespace broadmark::tide {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  ///< candidates, whose pairs are written together
+constexpr std::size_t kBlock = 1024;  ///< candidates per batch of written pairs
 
 bool isWithin(const Aabb& box, const Aabb& fat_box) {
   return isEveryAxis((cornerOf(box.min) >= cornerOf(fat_box.min)) &
@@ -147,7 +147,7 @@ void CandidatePairs::draw(DebugDraw& draw) const {
 std::string CandidatePairs::validate() const {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     if (!isEmpty(boxes_[i]) && !isWithin(boxes_[i], fat_boxes_[i]))
-      return "a body beyond its fat box";
+      return "a body extends beyond its fat box";
   }
   return search_->validate();
 }

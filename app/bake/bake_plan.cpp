@@ -50,7 +50,7 @@ void requireRoom(const BakePlan& plan, const fs::path& output) {
   const std::uint64_t free = fs::space(existing, failed).available;
   const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
   if (failed || needed <= free) return;
-  throw InputError(fmt::format("{}: not enough room: {} would take {} bytes, but only {} are free",
+  throw InputError(fmt::format("{}: not enough space: {} would take {} bytes, but only {} are free",
                                output.string(), counted(plan.recordings(), "recording"), needed,
                                free));
 }

@@ -141,7 +141,7 @@ constexpr SceneShortcut kSceneShortcuts[] = {
     {"seed", "S[,S...]", "seeds: same seed, same recording"},
     {"density", "D[,D...]", "share of the world's volume filled by bodies"},
     {"engine", "NAME[,NAME...]", "engines that move the bodies (see 'broadmark list engines')"},
-    {"input", "PATH", "recording, or directory of recordings, for an engine to replay", false}};
+    {"input", "PATH", "recording, or folder of recordings, for an engine to replay", false}};
 
 }  // namespace
 
@@ -221,7 +221,9 @@ CLI::Option* addList(CLI::App& app, const std::string& name, const std::string& 
                      const std::string& doc) {
   const auto split = [set = std::move(set), name](const std::vector<std::string>& texts) {
     const std::vector<std::string> parts = splitList(texts);
-    if (parts.empty()) throw InputError(fmt::format("{}: '{}' names nothing", name, texts.front()));
+    if (parts.empty()) {
+      throw InputError(fmt::format("{}: '{}' is an empty list", name, texts.front()));
+    }
     set(parts);
   };
   return app.add_option_function<std::vector<std::string>>(name, split, doc)
@@ -245,7 +247,9 @@ void hideWithout(const BuildPart& part, const std::vector<CLI::Option*>& options
 
 CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins, const std::string& more) {
   return addRepeatable(app, "--plugin", "FILE", plugins,
-                       fmt::format("shared library with more {} (repeatable)", more));
+                       fmt::format("shared library, or name from 'broadmark list plugins', with "
+                                   "more {} (repeatable)",
+                                   more));
 }
 
 CLI::Option* addExternal(CLI::App& app, std::vector<std::string>& plugins) {
@@ -259,7 +263,7 @@ CLI::Option* addExternal(CLI::App& app, std::vector<std::string>& plugins) {
   return app
       .add_option_function<std::vector<std::string>>(
           "--external", add,
-          "shell command of a program that is an algorithm: it reports its times itself (see "
+          "shell command that runs a program as an algorithm, which reports its own times (see "
           "docs/external.md; repeatable)")
       ->type_name("COMMAND")
       ->allow_extra_args(false);
@@ -315,8 +319,8 @@ CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {
     recorders = parseRecorders(names);
   };
   CLI::Option* option = addList(
-      app, "--recorder", "KIND[,KIND...]", set, [&] { return joined(recorders); },
-      fmt::format("kinds of recordings to keep: {} (default: {} if that can hold the "
+      app, "--recorder", "FORMAT[,FORMAT...]", set, [&] { return joined(recorders); },
+      fmt::format("formats of the recordings: {} (default: {} if that can hold the "
                   "scene, else {})",
                   fmt::join(recorderIds(), ", "), kAabbsExtension, kBroadmarkExtension));
   return suggestValues(option, recorderIds());
@@ -345,7 +349,7 @@ std::vector<CLI::Option*> addAnswer(CLI::App& app, Answer& answer) {
   const auto set = [&answer](const std::string& text) {
     const std::optional<Answer> found = findAnswer(text);
     if (!found || !isQuery(*found)) {
-      throw InputError(fmt::format("--queries: '{}': KIND:N is expected, with KIND {}, N 1 to {}",
+      throw InputError(fmt::format("--queries: '{}': KIND:N is expected; KIND: {}; N: 1 to {}",
                                    text, fmt::join(kQueryKinds.names(), ", "), kMaxQueries));
     }
     answer = *found;
@@ -353,8 +357,9 @@ std::vector<CLI::Option*> addAnswer(CLI::App& app, Answer& answer) {
   CLI::Option* queries = addValue(
       app, "--queries", "KIND:N", set,
       [&answer] { return isQuery(answer) ? answerName(answer) : std::string(); },
-      "instead of pairs: answer N queries a frame, such as rays:1000: bodies that overlap boxes, "
-      "that rays cross, that moving boxes (sweeps) touch, or that are nearest to a point");
+      "answer N queries per frame instead of reporting pairs, e.g. rays:1000; boxes: bodies that "
+      "overlap a box; rays: bodies that a ray crosses; sweeps: bodies that a moving box touches; "
+      "nearest: the eight bodies nearest to a point");
   queries->excludes(kind);
   return {kind, queries};
 }
@@ -387,9 +392,9 @@ CLI::Option* addCount(CLI::App& app, CountOptions& count) {
   CLI::Option* option = addValue(
       app, "--count", fmt::format("{}[:FRAMES]", kInstructions),
       [&](const std::string& text) { count = parseCount(text); }, [&] { return countText(count); },
-      fmt::format("count the instructions of the first {} frames, or as many as stated, instead of "
-                  "measuring times: by the processor's counters, where the system allows them, "
-                  "else under valgrind; on one thread",
+      fmt::format("count the instructions of the first {} frames, or of FRAMES, on one thread, "
+                  "instead of measuring times: by the processor's counters if the system allows "
+                  "them, else with valgrind",
                   CountOptions().frames));
   return suggestValues(option, {kInstructions});
 }

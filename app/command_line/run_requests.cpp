@@ -74,7 +74,7 @@ std::string textOf(const Json& value, const std::string& path) {
   }
   std::vector<std::string> parts;
   for (const Json& element : value) {
-    if (element.is_array()) throw InputError(path + ": an array within an array");
+    if (element.is_array()) throw InputError(path + ": arrays must not be nested");
     parts.push_back(textOf(element, path));
   }
   return fmt::format("{}", fmt::join(parts, ","));
@@ -119,7 +119,7 @@ std::vector<std::string> argumentsOf(std::string_view text, const std::string& n
   const JsonFields fields(json, name);
   if (!fields.has("schema") || fields.text("schema") != kRunSchema) {
     throw InputError(
-        fmt::format("{}: is no run request: its \"schema\" is not '{}'", name, kRunSchema));
+        fmt::format("{}: not a run request: \"schema\" must be '{}'", name, kRunSchema));
   }
   std::vector<const CLI::Option*> options;
   std::vector<std::string> keys;

@@ -73,8 +73,8 @@ void SessionParser::addSources() {
   for (CLI::Option* option : addSceneOptions(app_, options_.scene)) tag(option, kCase);
   tag(addParameters(app_, options_.parameters), kCase);
   tag(addPlugins(app_, options_.plugins,
-                 "algorithms or physics engines; or pairs:LOG, the pairs that a program logged "
-                 "(see 'broadmark audit') as an algorithm"),
+                 "algorithms or physics engines; or pairs:LOG: the pairs that a program logged, "
+                 "as an algorithm (see 'broadmark audit')"),
       kNone);
   tag(addExternal(app_, options_.plugins), kRequest);
   addCaseOfResults();
@@ -170,7 +170,7 @@ void SessionParser::addOutput() {
               "print the wrong pairs of each mismatch, with their frames"),
       kExport | kInspector | kUnchecked);
   CLI::Option* record = addPath(app_, "--record", "DIR", options_.record,
-                                "write the simulated recordings to this directory");
+                                "write the simulated recordings to this folder");
   tag(record, kExport | kInspector);
   tag(addRecorders(app_, options_.scene.recorders)->needs(record), kInspector);
 }
@@ -206,16 +206,17 @@ void SessionParser::addPictures() {
   };
   CLI::Option* camera =
       addValue(app_, "--camera", "X,Y,Z,YAW,PITCH,DISTANCE", set_camera, get_camera,
-               "the inspector's first view: the point it looks at and its distance from there, the "
-               "world being 1 in size around 0, and degrees");
+               "the inspector's initial camera: the point it looks at, in a world of size 1 around "
+               "0, its angles in degrees, and its distance from that point");
   const auto set_selection = [&inspector](const std::string& text) {
     inspector.selection = parseBodies(text);
   };
   const auto get_selection = [&inspector] {
     return fmt::format("{}", fmt::join(inspector.selection, ","));
   };
-  CLI::Option* selection = addValue(app_, "--select", "BODY[,BODY...]", set_selection,
-                                    get_selection, "bodies selected at first in the inspector");
+  CLI::Option* selection =
+      addValue(app_, "--select", "BODY[,BODY...]", set_selection, get_selection,
+               "bodies that are selected when the inspector opens");
   CLI::Option* ui =
       app_.add_flag("--ui", options_.ui, "with --headless: draw the inspector off-screen");
   CLI::Option* script = addPath(app_, "--script", "FILE", inspector.script,
@@ -244,7 +245,7 @@ void SessionParser::requireNoConflict() const {
   const Rule rules[] = {
       {!options_.case_id.empty(), kCase, "cannot be combined with --case, which already sets it"},
       {!options_.export_case.empty(), kExport, "cannot be combined with --export-case"},
-      {options_.ui, kInspector, "only for runs without the inspector: leave out --ui"},
+      {options_.ui, kInspector, "only for runs without the inspector: omit --ui"},
       {!options_.inspector(), kHeadless, "only for the inspector: add --ui, or omit --headless"},
       {!options_.inspector() && options_.screenshot.empty(), kNoPicture,
        "only for pictures: add --screenshot"},

@@ -16,7 +16,7 @@ namespace {
 /// Names of several options. CLI11 orders them by address.
 std::string sortedNames(const std::set<CLI::Option*>& options) {
   std::set<std::string> names;
-  for (const CLI::Option* option : options) names.insert(option->get_name());
+  for (const CLI::Option* option : options) names.insert(shownName(*option));
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -82,6 +82,10 @@ std::vector<std::string> namesOf(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names.push_back(fmt::format("-{}", name));
   for (const std::string& name : option.get_lnames()) names.push_back(fmt::format("--{}", name));
   return names;
+}
+
+std::string shownName(const CLI::Option& option) {
+  return option.get_positional() ? option.get_type_name() : option.get_name();
 }
 
 bool takesValue(const CLI::Option& option) { return option.get_items_expected_max() > 0; }

@@ -36,6 +36,8 @@ bool isShown(const CLI::Option&);
 
 /// Names of an option with dashes; of a positional argument its type.
 std::vector<std::string> namesOf(const CLI::Option&);
+/// Name of an option in messages: --NAME; of a positional argument its type.
+std::string shownName(const CLI::Option&);
 bool takesValue(const CLI::Option&);
 /// Whether the option is a flag that may have a value: "--periodic[=BOX]".
 bool takesOptionalValue(const CLI::Option&);

@@ -84,7 +84,7 @@ class Adviser {
       for (const int threads : threadCounts()) contests.push_back({answer, threads});
     }
     std::erase_if(contests, [&](const Contest& contest) { return candidatesOf(contest).empty(); });
-    if (contests.empty()) throw InputError("advise: no selected algorithm can run here");
+    if (contests.empty()) throw InputError("advise: no selected algorithm can run on this machine");
     printWarnings();
     std::size_t given = 0;
     try {
@@ -127,8 +127,8 @@ class Adviser {
     return {threads.begin(), threads.end()};
   }
 
-  /// The cases for that number of threads. On one thread, parallel variants equal others of their
-  /// family.
+  /// The cases for the contest's number of threads. On one thread, parallel variants equal others
+  /// of their family.
   [[nodiscard]] std::vector<Candidate> candidatesOf(const Contest& contest) const {
     const auto is_parallel = [](const Case& test_case) {
       return test_case.algorithm.traits.parallel;
@@ -193,7 +193,8 @@ class Adviser {
     }
     Advice advice = judge(contest, tuned, defaults, std::max(left(), seconds / 4));
     advice.effort = fmt::format(
-        "Tried: {} on a few frames, the best {} in duels, {} of parameters; the last duel on {}.",
+        "Tried {} on a few frames, the best {} in duels, and {} of parameters; the last duel ran "
+        "on {}.",
         counted(tried, "algorithm"), duellists, counted(settings, "setting"), duels_.framesText());
     advice.wrong = duels_.takeFailures();
     return advice;

@@ -91,11 +91,11 @@ class Audit {
     FrameDifference difference =
         findDifference({&run, 1}, oracle_.pairs(frame.boxes, filter, scene.periodic), frame,
                        static_cast<float>(options_.margin), filter, scene.periodic);
-    std::vector<Pair> doubled;
+    std::vector<Pair> duplicates;
     std::vector<Pair> impossible = log_.impossible();
     for (const Pair pair : difference.invalid_pairs) {
       const bool exists = pair.a < pair.b && pair.b < frame.boxes.size();
-      (exists ? doubled : impossible).push_back(pair);
+      (exists ? duplicates : impossible).push_back(pair);
     }
     const std::uint64_t others = difference.invalid_count - difference.duplicate_count;
     ++checked_;
@@ -104,7 +104,7 @@ class Audit {
     allowed_ += difference.allowed_extra_count;
     missed_.add(frame.index, difference.missed_count, difference.missed_pairs);
     false_.add(frame.index, difference.false_count, difference.false_pairs);
-    doubled_.add(frame.index, difference.duplicate_count, doubled);
+    duplicate_.add(frame.index, difference.duplicate_count, duplicates);
     impossible_.add(frame.index, others + log_.impossible().size(), impossible);
   }
 
@@ -120,7 +120,7 @@ class Audit {
     if (wrong_ == 0) return exit_status::success;
     std::vector<std::vector<std::string>> rows = {
         {"", "fault", "pairs", "frames", "first", "pair"}};
-    for (const Faults* faults : {&missed_, &false_, &doubled_, &impossible_}) {
+    for (const Faults* faults : {&missed_, &false_, &duplicate_, &impossible_}) {
       if (faults->count == 0) continue;
       const auto& first = faults->first;
       rows.push_back({"", faults->name, fmt::format("{}", faults->count),
@@ -129,7 +129,7 @@ class Audit {
                       first ? fmt::format("{}-{}", first->pair.a, first->pair.b) : ""});
     }
     progress.print(alignColumns(rows, {false, false, true, true, true, false}));
-    for (const Faults* faults : {&missed_, &false_, &doubled_}) {
+    for (const Faults* faults : {&missed_, &false_, &duplicate_}) {
       if (faults->first) show(*faults, progress);
     }
     progress.print(fmt::format("To see it: broadmark {} --plugin {}", shellQuoted(options_.source),
@@ -143,8 +143,8 @@ class Audit {
     const Selection part = selectionOf(
         recording_.scene(), {pair.a, pair.b},
         frame == 0 ? std::vector<std::uint32_t>{0} : std::vector<std::uint32_t>{frame - 1, frame});
-    progress.print(fmt::format("{} in frame {}: bodies {} and {}, here 0 and 1", faults.name, frame,
-                               pair.a, pair.b));
+    progress.print(fmt::format("{} in frame {}: bodies {} and {}, renumbered 0 and 1", faults.name,
+                               frame, pair.a, pair.b));
     progress.print(smallPartText(recording_, part));
     if (options_.output.empty()) return;
     makeDirectory(options_.output);
@@ -169,14 +169,14 @@ class Audit {
   std::uint64_t allowed_ = 0;
   Faults missed_{.name = "missed"};
   Faults false_{.name = "false", .rows = 1};
-  Faults doubled_{.name = "doubled", .rows = 2};
+  Faults duplicate_{.name = "duplicate", .rows = 2};
   Faults impossible_{.name = "impossible"};
 };
 
 int run(const Options& options) {
   if (!options.output.empty() && fs::exists(options.output)) {
     throw InputError(
-        fmt::format("--output: {}: exists: name a folder to create", options.output.string()));
+        fmt::format("--output: {} exists: name a new folder", options.output.string()));
   }
   const InterruptGuard guard;
   Source source = fileSource({options.source}, options.reading);
@@ -201,7 +201,7 @@ std::function<int()> add(CLI::App& app) {
   addPositive(app, "--margin", "D", options->margin,
               "allow pairs of boxes that overlap once each is enlarged by this much");
   addPath(app, "--output", "FOLDER", options->output,
-          "write the smallest recording that shows each kind of fault there, with its log");
+          "new folder, for the smallest recording of each kind of fault, with its log");
   addReadingOptions(app, options->reading);
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
@@ -211,7 +211,7 @@ std::function<int()> add(CLI::App& app) {
 
 Command command() {
   return {.name = "audit",
-          .summary = "Checks pairs that an engine logged: missed, false and doubled ones.",
+          .summary = "Checks the pairs that an engine logged for missed, false and duplicate ones.",
           .examples = {"audit session.aabbs pairs.csv",
                        "audit session.broadmark pairs.jsonl --margin 0.04 --output faults"},
           .add = add};

@@ -165,8 +165,8 @@ void addMovie(CLI::App& app, MovieOptions& movie) {
   const HelpGroup group(app, "Pictures");
   CLI::Option* directory =
       addPath(app, "--movie", "DIR", movie.directory,
-              "draw each recording as numbered pictures, in a folder with its name in this "
-              "directory");
+              "draw each recording as numbered pictures, in a subfolder of this folder named "
+              "after it");
   CLI::Option* every = addInteger(app, "--movie-every", "K", movie.every, 1, kMaxEvery,
                                   "frames between successive pictures");
   hideWithout(parts::kRenderer, {directory, every->needs(directory)});
@@ -182,7 +182,7 @@ std::function<int()> add(CLI::App& app) {
   addRecorders(app, bake.scene.recorders);
   addParameters(app, bake.parameters);
   addPath(app, "--output", "DIR", bake.record,
-          "directory for the recordings, with subfolders for each kind, such as "
+          "folder for the recordings, with a subfolder for each format, such as "
           "Recordings_AABBs/")
       ->required();
   bake.threads = allCores();

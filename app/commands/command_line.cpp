@@ -104,19 +104,58 @@ void describe(CLI::App& app, const std::vector<std::string>& examples) {
 std::string unexpectedText(const CLI::App& app, const std::string& argument) {
   if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
   std::vector<std::string> known;
-  for (const CLI::Option* option : shownOptions(app)) known.push_back(option->get_name());
+  for (const CLI::Option* option : shownOptions(app)) {
+    if (!option->get_positional()) known.push_back(option->get_name());
+  }
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearestName(name, known);
   return fmt::format("unknown option '{}'{}", name,
                      nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
-/// CLI11's error message on a single line.
+/// CLI11's error message on a single line, with the names and terms of help.
+std::string errorText(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  std::ranges::replace(message, '\n', ' ');
+  // Returns the option with this name, or null.
+  const auto option_of = [&](const std::string& name) { return app.get_option_no_throw(name); };
+  // Joins the two options that CLI11's message names before and after `separator`; "" if it names
+  // no two.
+  const auto related = [&](const std::string& separator, const std::string& relation) {
+    const auto at = message.find(separator);
+    if (at == std::string::npos) return std::string();
+    const CLI::Option* first = option_of(message.substr(0, at));
+    const CLI::Option* second = option_of(message.substr(at + separator.size()));
+    if (first == nullptr || second == nullptr) return std::string();
+    return shownName(*first) + relation + shownName(*second);
+  };
+  const std::string kind = error.get_name();
+  std::string text;
+  if (kind == "RequiresError") text = related(" requires ", ": only with ");
+  if (kind == "ExcludesError") text = related(" excludes ", ": cannot be combined with ");
+  if (kind == "RequiredError") {
+    const CLI::Option* option = option_of(message.substr(0, message.find(" is required")));
+    if (option != nullptr && option->get_positional()) {
+      text = fmt::format("no {} given", option->get_type_name());
+    }
+  }
+  if (kind == "ArgumentMismatch") {
+    const CLI::Option* option = option_of(message.substr(0, message.find(": ")));
+    if (option != nullptr && message.ends_with(" missing")) {
+      text =
+          fmt::format("{}: a value ({}) is missing", shownName(*option), option->get_type_name());
+    } else if (option != nullptr && message.find(": At Most 1 ") != std::string::npos) {
+      text = fmt::format("{}: given more than once", shownName(*option));
+    }
+  }
+  return text.empty() ? message : text;
+}
+
+/// The error of a wrong command line, which refers to the command's help.
 InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
   const auto chosen = main.get_subcommands();
   const CLI::App& app = chosen.empty() ? main : *chosen.front();
-  std::string message = error.what();
-  std::ranges::replace(message, '\n', ' ');
+  std::string message = errorText(app, error);
   if (!app.remaining().empty()) message = unexpectedText(app, app.remaining().front());
   const std::string name = chosen.empty() ? "" : app.get_name();
   return InputError(fmt::format("{}{} (see 'broadmark {}--help')", name.empty() ? "" : name + ": ",

@@ -136,7 +136,7 @@ int run(Options options) {
   }
   const std::vector<fs::path> judged = judgedFiles(options);
   if (judged.size() > 1 && !options.outputs.empty()) {
-    throw InputError("compare: output files need a single B");
+    throw InputError("compare: options for output files need exactly one B");
   }
   if (options.settle && options.program.empty() && options.comparison.by.empty()) {
     throw InputError(
@@ -159,7 +159,7 @@ int run(Options options) {
     if (!useStandardOutput(options.outputs)) fmt::print("{}", formatComparison(comparison));
     // An empty comparison must not look like a success.
     if (!comparison.comparable()) {
-      throw InputError(fmt::format("{} and {}: have no comparable cases in common",
+      throw InputError(fmt::format("{} and {}: no comparable cases in common",
                                    options.before.string(), path.string()));
     }
     writeComparison(options.outputs, comparison);
@@ -179,14 +179,14 @@ std::function<int()> add(CLI::App& app) {
   app.add_option("B", options->after, "results to judge")->type_name("B");
   addRepeatable(
       app, "--baseline", "FILE", options->baselines,
-      "another run like A (repeatable); with fewer than four cases, three or more runs show how "
-      "much runs differ");
+      "another run of A (repeatable); with fewer than four cases, at least three runs are needed "
+      "to estimate how much runs differ");
   addValue(
       app, "--margin", "SHARE",
       [=](const std::string& text) { options->margin = parseShare(text, "--margin", false); },
       [] { return fmt::format("{:.12g}%", 100 * ComparisonOptions{}.margin); },
-      fmt::format("differences within this share are 'same'; at most --fail-above; of "
-                  "instructions: {:.1g} % by default",
+      fmt::format("differences within this share count as 'same'; at most --fail-above; for "
+                  "instructions, {:.1g} % by default",
                   100 * kCountTolerance));
   addShare(app, "--fail-above", comparison.fail_above, false,
            "a case is a regression if it is slower by more than this share");
@@ -201,8 +201,8 @@ std::function<int()> add(CLI::App& app) {
       "where the processor counted them");
   app.add_flag("--fail-undecided", comparison.fail_undecided, "fail if any case is undecided");
   app.add_option("--by", comparison.by,
-                 "compare cases that differ in this (algorithm, threads, isa or a parameter) with "
-                 "the first such case of A, instead of each case with itself")
+                 "compare cases that differ in NAME (algorithm, threads, isa or a parameter) with "
+                 "the first of them in A, instead of each case with the same case of A")
       ->type_name("NAME");
   CLI::Option* settle =
       app.add_flag(

@@ -83,12 +83,12 @@ int run(const Options& options) {
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("input", options->input, "one of the " + recordingKindsText())
-      ->type_name("FILE")
+      ->type_name("IN")
       ->required();
   app.add_option("output", options->output,
                  fmt::format("recording to write, with a name that ends in {}",
                              fmt::join(boxRecordingExtensions(), " or ")))
-      ->type_name("FILE")
+      ->type_name("OUT")
       ->required();
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };

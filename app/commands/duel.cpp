@@ -423,10 +423,11 @@ std::function<int()> add(CLI::App& app) {
     const HelpGroup group(app, "What to open");
     CLI::Option* source = app.add_option(
         "source", options->words,
-        fmt::format("with --algorithm: what to run on ({}); else one such source and variants "
-                    "to compare on it, written like case names: ID[/ISA][/tTHREADS][/events]"
-                    "[/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; from a plug-in: "
-                    "PLUGIN.so:ID… or NAME:ID…",
+        fmt::format("a source and the variants to compare on it, written like case names: "
+                    "ID[/ISA][/tTHREADS][/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; "
+                    "from a plug-in: PLUGIN.so:ID… or NAME:ID…; without variants: with "
+                    "--baseline-program or --baseline-plugin a source to compare two builds on, "
+                    "with --algorithm any number of sources; a source is: {}",
                     sourceKindsText()));
     suggestValues(source->type_name("SOURCE")->required(), sceneAndAlgorithmIds());
     addSceneOptions(app, options->scene);
@@ -441,9 +442,9 @@ std::function<int()> add(CLI::App& app) {
     addDevice(app, options->cases.device);
     addFilter(app, options->filter);
     addPath(app, "--baseline-program", "PROGRAM", options->program,
-            "also run every case with this build of broadmark, and compare with it");
+            "also run every case with this other build of broadmark, and compare");
     addPath(app, "--baseline-plugin", "FILE", options->baseline_plugin,
-            "compare the cases of --plugin with those of this build of it");
+            "compare the algorithms of --plugin with those of this other build of it");
   }
   {
     const HelpGroup group(app, "How to measure");
@@ -456,7 +457,8 @@ std::function<int()> add(CLI::App& app) {
           options->max_seconds = parseNumber(text, "--max-seconds", 0, true);
         },
         [] {
-          return fmt::format("{}, or {} for each case of a suite", kMaxSeconds, kMaxSecondsOfCase);
+          return fmt::format("{}; without variants, {} for each case", kMaxSeconds,
+                             kMaxSecondsOfCase);
         },
         "end a duel after this many seconds");
     addCount(app, options->count);

@@ -78,7 +78,7 @@ std::function<int()> add(CLI::App& app) {
 
 Command command() {
   return {.name = "import",
-          .summary = "Makes a recording of meshes, particles or boxes from other programs.",
+          .summary = "Converts meshes, particles or boxes of other programs to a recording.",
           .examples = {"import boxes.csv -o boxes",
                        "import 'frames/cloth_*.ply' -o cloth --elements triangles"},
           .add = add};

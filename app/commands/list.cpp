@@ -72,15 +72,15 @@ const char* changingWorldsText(const Algorithm& algorithm) {
     case ChangingWorlds::unknown:
       break;
   }
-  return "not at all";
+  return "not supported";
 }
 
 const char* severalWorldsText(const Algorithm& algorithm) {
   const AlgorithmTraits& traits = algorithm.traits;
-  if (traits.changing_worlds == ChangingWorlds::unknown) return "not at all";
-  if (traits.instance_per_world) return "an instance for each";
+  if (traits.changing_worlds == ChangingWorlds::unknown) return "not supported";
+  if (traits.instance_per_world) return "one instance per world";
   if (traits.changing_worlds == ChangingWorlds::native) return "natively";
-  return traits.on_device ? "side by side" : "side by side if small, else an instance for each";
+  return traits.on_device ? "side by side" : "side by side if small, else one instance per world";
 }
 
 const char* eventsText(const Algorithm& algorithm) {
@@ -91,8 +91,8 @@ const char* eventsText(const Algorithm& algorithm) {
 std::string detailsOf(const Algorithm& algorithm) {
   const AlgorithmDescription& description = algorithm.description;
   std::string text = fmt::format(
-      "{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. Several worlds at one "
-      "place: {}. Events: {}. {}",
+      "{}: {}. Optimisations: {}. Time {}. Space {}. Changing worlds: {}. Several worlds at the "
+      "same position: {}. Events: {}. {}",
       algorithm.id, algorithm.summary, optimisationsOf(algorithm), description.time,
       description.space, changingWorldsText(algorithm), severalWorldsText(algorithm),
       eventsText(algorithm), description.source);

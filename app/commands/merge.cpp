@@ -42,7 +42,7 @@ int run(const Options& options) {
   writeResults(options.outputs, merged.results);
   const auto partial = std::ranges::count_if(
       merged.results.cases, [](const CaseResult& result) { return !result.isComplete(); });
-  fmt::print(stderr, "merged: {} of {}; {} were in several of them; {} are partial\n",
+  fmt::print(stderr, "merged: {} from {}; {} found in several files; {} partial\n",
              counted(merged.results.cases.size(), "case"), counted(runs.size(), "file"),
              merged.repeated, partial);
   std::set<std::string> builds;
@@ -50,7 +50,7 @@ int run(const Options& options) {
     builds.insert(buildName(environment));
   }
   if (builds.size() > 1) {
-    fmt::print(stderr, "of different builds: {}\n", fmt::join(builds, "; "));
+    fmt::print(stderr, "results of different builds: {}\n", fmt::join(builds, "; "));
   }
   return 0;
 }

@@ -58,7 +58,7 @@ struct Options : RunRequest {
   std::optional<std::uint64_t> rounds;       ///< limit that replaces `minutes`
   std::optional<std::uint64_t> seed;         ///< nothing: that of the log, or 1
   int jobs = allCores() + 1;                 ///< the threads of a round often wait for each other
-  std::optional<std::uint64_t> served_seed;  ///< this process serves rounds of that seed
+  std::optional<std::uint64_t> served_seed;  ///< seed of the rounds that this process serves
   fs::path output = "torture";
   bool quiet = false;
 };
@@ -155,7 +155,7 @@ class Torture {
         log.subjects == log_.subjects && log.seed == options_.seed.value_or(log.seed);
     if (!is_same) {
       throw InputError(
-          fmt::format("{}: is of other algorithms or another seed ({}): choose another --output",
+          fmt::format("{}: has other algorithms or another seed ({}): choose another --output",
                       log_file_.string(), log.seed));
     }
     if (log.builds != log_.builds) {
@@ -423,7 +423,7 @@ std::function<int()> add(CLI::App& app) {
   addValue(app, "--seed", "S", set_seed, [] { return "1"; }, "same seed, same rounds");
   addInteger(app, "--jobs", "J", options->jobs, 1, 1024, "rounds run at the same time");
   addPath(app, "--output", "DIR", options->output,
-          "directory for recordings of faults, which are rerun first, and for the log "
+          "folder for recordings of faults, which are rerun first, and for the log "
           "(torture.json), from which the same command resumes (default: torture)");
   addHosts(app, options->hosts);
   addQuiet(app, options->quiet);

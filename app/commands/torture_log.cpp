@@ -22,9 +22,15 @@ Json toJson(const FoundFault& fault) {
           {"minimal", fault.minimal},     {"command", fault.command}, {"boxes", fault.boxes}};
 }
 
+/// The kind of fault in a log. Logs of older versions call some faults "unsteady".
+std::string kindIn(const JsonFields& json) {
+  const std::string kind = json.text("kind");
+  return kind == "unsteady" ? std::string(kFaultKinds.nameOf(FaultKind::nondeterministic)) : kind;
+}
+
 FoundFault foundFrom(const JsonFields& json) {
   return {.algorithm = json.text("algorithm"),
-          .kind = json.text("kind"),
+          .kind = kindIn(json),
           .test_case = json.text("case"),
           .world = json.text("world"),
           .text = json.text("text"),
@@ -96,9 +102,9 @@ std::string share(std::uint64_t part, std::uint64_t total) {
 }
 
 std::string coverageTable(const TortureLog& log) {
-  std::vector<std::vector<std::string>> table = {{"algorithm", "worlds", "frames", "kinds",
-                                                  "events", "come and go", "filtered",
-                                                  "new filters", "threads", "instruction sets"}};
+  std::vector<std::vector<std::string>> table = {{"algorithm", "worlds", "frames", "world kinds",
+                                                  "events", "changing", "filtered",
+                                                  "filter changes", "threads", "instruction sets"}};
   for (const auto& [algorithm, row] : coverageByAlgorithm(log.coverage)) {
     const TortureCount& count = row.count;
     table.push_back({algorithm, fmt::format("{}", count.worlds), fmt::format("{}", count.frames),
@@ -115,7 +121,7 @@ std::string coverageTable(const TortureLog& log) {
 std::string nothingWrong(const TortureLog& log) {
   TortureCount sum;
   for (const auto& [key, count] : log.coverage) sum += count;
-  return fmt::format("nothing went wrong in {} of {}, each of at most {}\n",
+  return fmt::format("no fault found in {} of {}, each of at most {}\n",
                      counted(sum.frames, "frame"), counted(sum.worlds, "world"),
                      extentText(sum.max_bodies, sum.max_frames));
 }
@@ -158,8 +164,7 @@ TortureLog parseTortureLog(std::string_view text, const std::string& name) {
   fields.eachObject("found",
                     [&](const JsonFields& found) { log.found.push_back(foundFrom(found)); });
   fields.eachObject("times", [&](const JsonFields& times) {
-    log.times[{times.text("algorithm"), times.text("kind")}] =
-        times.integer<std::uint64_t>("times");
+    log.times[{times.text("algorithm"), kindIn(times)}] += times.integer<std::uint64_t>("times");
   });
   log.coverage = coverageFrom(fields);
   return log;
@@ -189,7 +194,7 @@ std::string formatTortureLog(const TortureLog& log) {
   std::string text = coverageTable(log);
   const std::uint64_t frames = log.frames();
   text +=
-      fmt::format("seed {}: {} of {} in {}: {:.0f} a second\n", log.seed, counted(frames, "frame"),
+      fmt::format("seed {}: {} of {} in {}: {:.0f} frames/s\n", log.seed, counted(frames, "frame"),
                   counted(log.next - log.unfinished.size(), "round"), waitingTime(log.seconds),
                   static_cast<double>(frames) / std::max(log.seconds, 1e-9));
   if (log.times.empty()) return text + nothingWrong(log);

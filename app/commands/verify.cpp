@@ -58,9 +58,9 @@ Cells boxCells(const RangeStatistics& range) {
           number(range.sizeRatio()),   fmt::format("{}", range.max_outside)};
 }
 
-/// For worlds in which bodies come and go.
-constexpr const char* kPopulationHeadings[] = {"fewest", "bodies", "most",
-                                               "appear", "vanish", "change"};
+/// For worlds in which bodies appear or disappear.
+constexpr const char* kPopulationHeadings[] = {"min bodies", "mean",   "max",
+                                               "appear",     "vanish", "change"};
 Cells populationCells(const RangeStatistics& range) {
   const auto change = [&](double Changes::* member) {
     return range.changes ? number((*range.changes).*member) : kNoValue;

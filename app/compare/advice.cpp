@@ -23,14 +23,14 @@ std::string ratioText(double ratio) {
   return fmt::format("{:.{}f}", ratio, ratio < 10 ? 2 : ratio < 100 ? 1 : 0);
 }
 
-/// "3.70 times as slow (3.62…3.79)", "level with it (1.01 times its time, 0.99…1.02)".
+/// "3.70 times as slow (3.62…3.79)", "as fast as it (1.01 times its time, 0.99…1.02)".
 std::string slownessText(const Estimate& ratio) {
   const auto& [low, high] = ratio.ci95;
   const std::string interval = fmt::format("{}…{}", ratioText(low), ratioText(high));
   const Verdict verdict = verdictOn(ratio.ci95, kAdviceMargin);
   if (verdict != Verdict::slower) {
     return fmt::format("{} it ({} times its time, {})",
-                       verdict == Verdict::same ? "level with" : "indistinguishable from",
+                       verdict == Verdict::same ? "as fast as" : "indistinguishable from",
                        ratioText(ratio.value), interval);
   }
   if (ratio.value >= 2) {
@@ -111,7 +111,7 @@ std::string paragraph(const Advice& advice) {
   const std::string answer = answerName(advice.answer);
   std::string text = fmt::format("{}, {}: ", answer, counted(advice.threads, "thread"));
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  if (advice.finalists.empty()) return text + "no algorithm gave right answers.";
+  if (advice.finalists.empty()) return text + "no algorithm gave correct answers.";
   const Finalist& first = advice.finalists.front();
   const bool is_level =
       advice.finalists.size() > 1 &&
@@ -124,7 +124,7 @@ std::string paragraph(const Advice& advice) {
     text += fmt::format(" {} {}, {}, {}.", kPlaces[i - 1], choiceText(test_case),
                         durationText(ratio.after), slownessText(ratio.ratio));
   }
-  if (advice.finalists.size() == 1) text += " There is no second.";
+  if (advice.finalists.size() == 1) text += " There is no runner-up.";
   if (advice.untuned) {
     const Case& untuned = advice.untuned->test_case;
     text += fmt::format(" {}{} is {}.", choiceText(untuned),

@@ -329,8 +329,8 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
   const double drift = comparison.drift().value_or(0);
   if (std::abs(drift) > options.margin) {
     comparison.notes.push_back(fmt::format(
-        "the time of all cases together changed by {:+.1f} %: the machine changed, or something "
-        "they share; each is judged relative to the others",
+        "the times of all cases changed by {:+.1f} % in the median: the machine changed, or "
+        "something that they share; each case is judged relative to the others",
         100 * drift));
   }
   return comparison;

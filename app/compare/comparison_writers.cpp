@@ -66,7 +66,7 @@ std::string escapedForMarkdown(std::string_view text) {
 /// The columns of a table.
 std::vector<std::string> columnsOf(const Comparison& comparison) {
   if (comparison.options.instructions) {
-    return {"case", "instructions of A", "of B", "B/A", "tolerance", "verdict"};
+    return {"case", "instructions of A", "instructions of B", "B/A", "tolerance", "verdict"};
   }
   return {"case", "A", "B", "B/A", "95 % interval", "verdict"};
 }

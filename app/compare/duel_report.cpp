@@ -25,7 +25,7 @@ std::string changeText(double ratio) {
 
 std::string table(const DuelResult& result) {
   std::vector<std::vector<std::string>> rows = {
-      {"", "variant", "median", "minimum", "ratio to the first named", "95 % interval"}};
+      {"", "variant", "median", "minimum", "ratio to the first variant", "95 % interval"}};
   for (const DuelRank& rank : result.ranking) {
     const DuelResult::Side& side = result.sides[rank.side];
     const bool ties = std::ranges::count(result.ranking, rank.rank, &DuelRank::rank) > 1;

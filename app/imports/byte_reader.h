@@ -65,7 +65,7 @@ class ByteReader {
   [[noreturn]] void failCutShort(std::string_view what) const;
 
  private:
-  /// Fills the buffer from the current byte on. Returns whether it holds so many bytes.
+  /// Fills the buffer from the current byte on. Returns whether it holds `bytes` bytes.
   bool refill(std::size_t bytes);
   void skipBlanks();
   void skipSpace();

@@ -197,8 +197,8 @@ class ElementFrames final : public IndexedFrames {
     }
     if (meshes_.size() > kMaxShown) text += "; …";
     return text +
-           "; a file with the elements of another, or with more behind those of the file "
-           "before, continues their bodies";
+           "; a file with the same elements as another file, or with further elements after those "
+           "of the previous file, continues its bodies";
   }
 
   std::span<const Aabb> readBoxes(std::uint32_t index) override {

@@ -216,7 +216,7 @@ class Scene {
     std::vector<std::uint32_t> roots = document_.indices(scene, "nodes", "nodes");
     for (const std::uint32_t root : roots) {
       if (!nodes_[root].parent) continue;
-      fail(scene, fmt::format("nodes[{}] is no root: it is a child of nodes[{}]", root,
+      fail(scene, fmt::format("nodes[{}] is not a root: it is a child of nodes[{}]", root,
                               *nodes_[root].parent));
     }
     std::vector<std::uint32_t> sorted = roots;
@@ -270,7 +270,7 @@ class Scene {
     const auto animated = animated_.find({instance.node, Property::weights});
     const bool animation_fits = animated == animated_.end() || animated->second->width() == targets;
     if (weights.size() == targets && animation_fits) return;
-    fail(object, fmt::format("{} weights of {} morph targets",
+    fail(object, fmt::format("{} weights, but {} morph targets",
                              animation_fits ? weights.size() : animated->second->width(), targets));
   }
 
@@ -287,7 +287,7 @@ class Scene {
     if (!object.has("inverseBindMatrices")) return skin;
     const Accessor& matrices = document_.accessor(object, "inverseBindMatrices", "MAT4");
     if (matrices.count < skin.joints.size()) {
-      fail(object, fmt::format("{} inverse bind matrices of {} joints", matrices.count,
+      fail(object, fmt::format("{} inverse bind matrices, but {} joints", matrices.count,
                                skin.joints.size()));
     }
     for (std::uint32_t joint = 0; joint < skin.joints.size(); ++joint) {
@@ -306,14 +306,17 @@ class Scene {
       instance.copies.push_back(Affine3d::Identity());
       return;
     }
-    if (instance.skin != nullptr) fail(object, fmt::format("a skin with {}", kInstancing));
+    if (instance.skin != nullptr) {
+      fail(object, fmt::format("a skin cannot be combined with {}", kInstancing));
+    }
     const JsonFields attributes = instancing->object("attributes");
     std::optional<std::uint32_t> count;
     const auto accessor = [&](const char* key, std::string_view type) -> const Accessor* {
       if (!attributes.has(key)) return nullptr;
       const Accessor& found = document_.accessor(attributes, key, type);
       if (count.value_or(found.count) != found.count) {
-        fail(attributes, fmt::format("{} and {} instances", *count, found.count));
+        fail(attributes, fmt::format("{} and {} instances: all attributes must have the same count",
+                                     *count, found.count));
       }
       count = found.count;
       return &found;

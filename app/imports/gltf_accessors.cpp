@@ -250,10 +250,10 @@ void Document::readSparse(const JsonFields& sparse, Accessor& accessor) {
     const auto index =
         static_cast<std::uint32_t>(list.component(bytes + std::size_t{i} * index_size));
     if (index >= accessor.count) {
-      fail(indices, fmt::format("index {} of {} elements", index, accessor.count));
+      fail(indices, fmt::format("index {}, but there are {} elements", index, accessor.count));
     }
     if (i > 0 && index <= accessor.sparse_indices_.back()) {
-      fail(indices, fmt::format("index {} behind {}: ascending ones are expected", index,
+      fail(indices, fmt::format("index {} after {}: indices must ascend", index,
                                 accessor.sparse_indices_.back()));
     }
     accessor.sparse_indices_.push_back(index);

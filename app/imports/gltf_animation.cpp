@@ -189,7 +189,7 @@ void Sampler::interpolate(std::size_t first, double factor, std::span<double> va
   if (property_ != Property::rotation) return;
   Eigen::Map<Eigen::Vector4d> rotation(value.data());
   const double length = rotation.norm();
-  if (!(length > 0)) throw InputError(name_ + ": a rotation vanishes between two keys");
+  if (!(length > 0)) throw InputError(name_ + ": a rotation between two keys has length 0");
   rotation /= length;
 }
 
@@ -224,7 +224,8 @@ std::map<AnimatedProperty, std::shared_ptr<const Sampler>> readAnimations(Docume
       }
       const std::uint64_t number = integer(channel, "sampler", samplers.size());
       if (number >= samplers.size()) {
-        fail(channel, fmt::format("sampler {} of {}", number, samplers.size()));
+        fail(channel,
+             fmt::format("sampler {} does not exist: there are {}", number, samplers.size()));
       }
       auto& sampler = known[{number, *property}];
       if (sampler == nullptr) {

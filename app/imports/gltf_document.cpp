@@ -122,7 +122,7 @@ void Document::readBinary(std::string_view bytes, ImportSummary& summary) {
     refuse(fmt::format("{} bytes are stated, but there are {}: cut short?", length, bytes.size()));
   }
   if (length < bytes.size()) {
-    addOnce(summary.left_out, fmt::format("{} bytes behind the end", bytes.size() - length));
+    addOnce(summary.left_out, fmt::format("{} bytes after the end", bytes.size() - length));
   }
   bytes = bytes.substr(0, length);
   std::optional<std::string_view> text;

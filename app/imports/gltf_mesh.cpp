@@ -46,7 +46,7 @@ class MeshReader {
     if (object_.has("weights")) mesh_.weights = numbers(object_, "weights");
     if (mesh_.weights.empty()) mesh_.weights.resize(targets_.value_or(0));
     if (mesh_.weights.size() != targets_.value_or(0)) {
-      fail(object_, fmt::format("{} weights of {} morph targets", mesh_.weights.size(),
+      fail(object_, fmt::format("{} weights, but {} morph targets", mesh_.weights.size(),
                                 targets_.value_or(0)));
     }
     std::vector<std::vector<std::uint32_t>> used(sources_.size());
@@ -101,7 +101,7 @@ class MeshReader {
       });
     }
     if (targets_.value_or(source.targets.size()) != source.targets.size()) {
-      fail(object, fmt::format("{} morph targets, but {} of other primitives of the mesh",
+      fail(object, fmt::format("{} morph targets, but {} in other primitives of the mesh",
                                source.targets.size(), *targets_));
     }
     targets_ = source.targets.size();
@@ -122,7 +122,7 @@ class MeshReader {
                            const VertexSource& source) {
     const Accessor& accessor = document_.accessor(object, key, type);
     if (accessor.count != source.positions->count) {
-      throw InputError(fmt::format("{}: {} elements for {} positions", object.path(key),
+      throw InputError(fmt::format("{}: {} elements, but {} positions", object.path(key),
                                    accessor.count, source.positions->count));
     }
     return &accessor;
@@ -136,8 +136,8 @@ class MeshReader {
       for (std::uint32_t i = 0; i < indices.count; ++i) {
         corners.push_back(static_cast<std::uint32_t>(indices.number(i)));
         if (corners.back() < positions.count) continue;
-        fail(object, fmt::format("index {} is {}, of {} vertices: damaged?", i, corners.back(),
-                                 positions.count));
+        fail(object, fmt::format("index {} is {}, but there are {} vertices: damaged?", i,
+                                 corners.back(), positions.count));
       }
     } else {
       document_.charge(positions.count, sizeof(std::uint32_t));
@@ -153,7 +153,7 @@ class MeshReader {
     const std::size_t count = corners.size();
     const auto require_multiple = [&](std::size_t of) {
       if (count % of == 0) return;
-      fail(object, fmt::format("{} vertices in a row: a multiple of {} is expected", count, of));
+      fail(object, fmt::format("{} vertices: a multiple of {} is expected", count, of));
     };
     const auto add_triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
       primitive.triangles.push_back({corners[a], corners[b], corners[c]});
@@ -239,7 +239,7 @@ class MeshReader {
         const bool exists = joints[i] >= 0 && joints[i] < static_cast<double>(joints_) &&
                             joints[i] == std::floor(joints[i]);
         if (!exists && weights[i] != 0) {
-          throw InputError(fmt::format("{}: element {}: joint {:g}, of {}",
+          throw InputError(fmt::format("{}: element {}: joint {:g}, but there are {}",
                                        source.joints[set]->name, vertex, joints[i], joints_));
         }
         group.joints.push_back(exists ? static_cast<std::uint32_t>(joints[i]) : 0);

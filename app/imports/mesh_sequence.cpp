@@ -46,7 +46,8 @@ MeshTopology readMesh(const fs::path& file, const ReadingOptions& options, const
   if (format == "obj") return readObj(file, sink, summary);
   if (format == "ply") return readPly(file, sink, summary);
   if (format == "stl") return readStl(file, sink, summary);
-  throw InputError(fmt::format("{}: no mesh: PLY, OBJ, STL and glTF are read", file.string()));
+  throw InputError(
+      fmt::format("{}: not a mesh file: PLY, OBJ, STL or glTF is expected", file.string()));
 }
 
 }  // namespace
@@ -86,7 +87,7 @@ void MeshSequence::addFrame(std::span<const Point> points, const fs::path& file)
     return !std::ranges::all_of(point, [](float value) { return std::isfinite(value); });
   });
   if (invalid != points.end()) {
-    throw InputError(fmt::format("{}: vertex {} has a coordinate that is no finite 32-bit float",
+    throw InputError(fmt::format("{}: vertex {} has a coordinate that is not a finite 32-bit float",
                                  file.string(), invalid - points.begin()));
   }
   if (frames_.size() > kMaxFrames) throw InputError(fmt::format("more than {} frames", kMaxFrames));

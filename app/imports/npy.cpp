@@ -70,7 +70,7 @@ std::string textOf(ByteReader& reader, std::uint64_t bytes) {
 /// Reads an entry of the central directory.
 Entry readEntry(ByteReader& reader) {
   if (little<std::uint32_t>(reader) != kEntrySignature) {
-    reader.fail(reader.offset(), "no entry of the archive's directory");
+    reader.fail(reader.offset(), "not an entry of the archive's directory");
   }
   Entry entry;
   skip(reader, 4);
@@ -257,7 +257,7 @@ void NpyBoxes::readHeader(Extent array) {
   constexpr std::uint32_t kMaxHeader = 1 << 16;
   reader.seek(array.begin);
   if (array.size < kMinBytes || textOf(reader, kNpyMagic.size()) != kNpyMagic) {
-    fail("is no array of NumPy");
+    fail("is not a NumPy array");
   }
   const int version = reader.get();
   reader.get();  // the minor version
@@ -285,7 +285,7 @@ void NpyBoxes::readHeader(Extent array) {
   order_ = plain[1] == '>' ? std::endian::big : std::endian::little;
   item_bytes_ = static_cast<std::uint64_t>(type_[1] - '0');
   if (!valueOf(header, "fortran_order").starts_with("False")) {
-    fail("is in Fortran's order: save numpy.ascontiguousarray(boxes)");
+    fail("is in Fortran order: save numpy.ascontiguousarray(boxes)");
   }
   data_ = begin + bytes;
   setShape(valueOf(header, "shape"), {data_, array.size - (data_ - array.begin)});
@@ -302,7 +302,9 @@ void NpyBoxes::setShape(std::string_view shape, Extent data) {
   for (const std::string_view word : words) {
     std::int64_t size = 0;
     if (trimmed(word).empty()) continue;  // after the last comma
-    if (!parseInteger(trimmed(word), size) || size < 0) fail(fmt::format("its shape is {}", text));
+    if (!parseInteger(trimmed(word), size) || size < 0) {
+      fail(fmt::format("its shape is {}: a tuple of sizes is expected", text));
+    }
     sizes.push_back(static_cast<std::uint64_t>(size));
   }
   if (sizes.size() >= 2 && sizes.back() == kBoxNumbers) {
@@ -315,8 +317,8 @@ void NpyBoxes::setShape(std::string_view shape, Extent data) {
   if (sizes.size() == 1) sizes.insert(sizes.begin(), 1);
   if (sizes.size() != 2) {
     fail(fmt::format(
-        "its shape is {}: (frames, bodies, 2, 3) or (frames, bodies, 6) is expected, or these "
-        "without frames",
+        "its shape is {}: (frames, bodies, 2, 3) or (frames, bodies, 6), with or without frames, "
+        "is expected",
         text));
   }
   if (sizes[0] > kMaxCount || sizes[1] > kMaxCount) fail("more frames or bodies than 2^31 - 1");

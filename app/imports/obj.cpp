@@ -33,7 +33,7 @@ class ObjReader {
       } else if (words_[0] == "l") {
         addLine();
       } else if (words_[0] == "p") {
-        readVertices(1, "a point element names a vertex or more");  // all vertices are elements
+        readVertices(1, "a point needs at least one vertex");  // all vertices are elements
       } else if (std::ranges::find(kObjAttributes, words_[0]) == std::end(kObjAttributes)) {
         leaveOut();
       }
@@ -73,7 +73,7 @@ class ObjReader {
   void addVertex() {
     // A weight or a colour may follow, or both; a colour may have a transparency.
     if (words_.size() < 4 || words_.size() > 8) {
-      lines_.fail("a vertex has three coordinates, then a weight or a colour or nothing");
+      lines_.fail("a vertex needs three coordinates; a weight or a colour may follow");
     }
     if (points.size() >= MeshTopology::kMaxVertices) lines_.fail("more than 2^31 - 1 vertices");
     Point point;
@@ -85,12 +85,12 @@ class ObjReader {
   }
 
   void addFace() {
-    readVertices(3, "a face has three vertices or more");
+    readVertices(3, "a face needs at least three vertices");
     mesh.addPolygon(vertices_);
   }
 
   void addLine() {
-    readVertices(2, "a line has two vertices or more");
+    readVertices(2, "a line needs at least two vertices");
     for (std::size_t i = 1; i < vertices_.size(); ++i) {
       mesh.lines.push_back({vertices_[i - 1], vertices_[i]});
     }
@@ -129,7 +129,7 @@ class ObjReader {
         shown += c > ' ' && c <= '~' ? std::string(1, c)
                                      : fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
       }
-      lines_.fail(fmt::format("'{}' is no statement of OBJ files", shown));
+      lines_.fail(fmt::format("'{}' is not an OBJ statement", shown));
     }
     if (left_out.size() < kMaxNames) left_out.emplace(words_[0].substr(0, 40));
   }

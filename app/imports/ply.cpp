@@ -78,7 +78,7 @@ class PlyHeaderReader {
 
   void read() {
     if (!nextLine() || words_.size() != 1 || words_[0] != "ply") {
-      fail("not a PLY file: its first line is 'ply'");
+      fail("not a PLY file: the first line must be 'ply'");
     }
     while (true) {
       if (!nextLine()) fail("the file ends within the header: 'end_header' is expected");
@@ -95,7 +95,7 @@ class PlyHeaderReader {
                          onOneLine(std::string(words_[0].substr(0, 40)))));
       }
     }
-    if (!has_format_) fail("no line 'format'");
+    if (!has_format_) fail("a line 'format' is missing");
   }
 
   /// Order of the bytes; nothing: text.
@@ -158,7 +158,9 @@ class PlyHeaderReader {
                          .type = typeOf(words_[words_.size() - 2])};
     if (is_list) {
       property.count_type = typeOf(words_[2]);
-      if (*property.count_type >= PlyType::float32) fail("a list's count is of an integer type");
+      if (*property.count_type >= PlyType::float32) {
+        fail("the count of a list must have an integer type");
+      }
     }
     if (elements.back().find(property.name)) {
       fail(fmt::format("a second property '{}' of '{}'", onOneLine(property.name),
@@ -225,7 +227,7 @@ class PlyReader {
       while (bytes_.bytesLeft() > 0 && bytes_.atLineEnd()) bytes_.get();
     }
     if (const std::uint64_t rest = bytes_.bytesLeft(); rest > 0) {
-      summary_.left_out.push_back(fmt::format("{} bytes behind the last element", rest));
+      summary_.left_out.push_back(fmt::format("{} bytes after the last element", rest));
     }
   }
 
@@ -395,8 +397,10 @@ class PlyReader {
     if (value >= 0 && value < mesh.vertices && value == std::floor(value)) {
       return static_cast<std::uint32_t>(value);
     }
-    failAtNumber(fmt::format("row {} of '{}' names vertex {:.10g}, of {}: damaged, or cut short?",
-                             row_, element.name, value, mesh.vertices));
+    failAtNumber(
+        fmt::format("row {} of '{}' names vertex {:.10g}, but there are {}: damaged, or "
+                    "cut short?",
+                    row_, element.name, value, mesh.vertices));
   }
 
   /// Returns the index of a property, which will be used. Throws InputError if there is none.

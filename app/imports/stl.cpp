@@ -114,7 +114,7 @@ class StlReader {
       corners.push_back(addPoint(point));
     }
     if (!sameWord(last_word_, "endloop")) failExpecting("'vertex' or 'endloop'");
-    if (corners.size() < 3) bytes_.failAtWord("a facet has three corners or more");
+    if (corners.size() < 3) bytes_.failAtWord("a facet needs at least three corners");
     if (!sameWord(nextWord("a facet"), "endfacet")) failExpecting("'endfacet'");
     mesh.addPolygon(corners);
   }
@@ -132,17 +132,17 @@ class StlReader {
   void readBinary(std::uint64_t facets) {
     summary_.format = "binary STL";
     if (size_ < kStlHeaderBytes) {
-      bytes_.fail(size_, fmt::format("too short: an STL file begins with 'solid', or has a header "
-                                     "of {} bytes",
+      bytes_.fail(size_, fmt::format("too short: an STL file must begin with 'solid', or with a "
+                                     "header of {} bytes",
                                      kStlHeaderBytes));
     }
     const std::uint64_t room = (size_ - kStlHeaderBytes) / kStlFacetBytes;
     if (facets > room) {
       bytes_.fail(size_,
-                  fmt::format("the file ends within facet {} of {}: cut short?", room, facets));
+                  fmt::format("the file ends after {} of {} facets: cut short?", room, facets));
     }
     if (facets == 0 && size_ > kStlHeaderBytes) {
-      bytes_.fail(kStlHeaderBytes, "bytes behind the header, which claims no facets");
+      bytes_.fail(kStlHeaderBytes, "bytes after the header, which states no facets");
     }
     points.reserve(3 * facets);
     bytes_.seek(kStlHeaderBytes);
@@ -172,7 +172,7 @@ class StlReader {
   void noteRest(std::string_view behind) {
     const std::uint64_t rest = bytes_.bytesLeft();
     if (rest == 0) return;
-    summary_.left_out.push_back(fmt::format("{} bytes behind {}", rest, behind));
+    summary_.left_out.push_back(fmt::format("{} bytes after {}", rest, behind));
   }
 
   ByteReader bytes_;

@@ -167,8 +167,9 @@ class TextFrames final : public IndexedFrames {
     summary.format = format;
     if (has_ids_ || locations_.size() == 1) return;
     const bool varies = !scene_.all_present;
-    const std::string order = fmt::format("no ids: a body is identified by its place in a frame{}",
-                                          varies ? ", and their number varies" : "");
+    const std::string order =
+        fmt::format("no ids: bodies are identified by their order in a frame{}",
+                    varies ? ", and their number varies" : "");
     addOnce(varies || !format_->keepsOrder() ? summary.warnings : summary.used, order);
   }
 

@@ -17,7 +17,7 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
     {"Wheel", "zoom towards the pointer, or away"},
     {"Click", "select a body or its group (with Ctrl: add or remove it)"},
     {"Alt + click", "select a single body of a group"},
-    {"Drag a handle", "move, turn or scale the selected bodies (with Ctrl: snap to steps)"},
+    {"Drag a handle", "move, rotate or scale the selected bodies (with Ctrl: snap to steps)"},
     {"Click, drag with brush", "paint bodies on the ground or on other bodies"},
     {"Shift + drag", "select all bodies in a rectangle"},
     {"Double click", "fly to a body"},

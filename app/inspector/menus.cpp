@@ -143,7 +143,7 @@ void Inspector::savePlot(const std::string& plot, fs::path path) {
 }
 
 void Inspector::askMovie() {
-  files_.ask({.title = "Directory for the movie's pictures",
+  files_.ask({.title = "Folder for the movie's pictures",
               .purpose = FileDialog::Purpose::directory,
               .chosen = [this](const fs::path& path) { movie_directory_ = path; }});
 }

@@ -176,7 +176,7 @@ std::vector<Algorithm> algorithmsOf(const broadmark_plugin* plugin, const std::s
   };
   if (plugin == nullptr) refuse(fmt::format("{} returns null", kCPluginSymbol));
   if (plugin->version == 0 || plugin->version > BROADMARK_PLUGIN_VERSION) {
-    refuse(fmt::format("made for version {} of broadmark_plugin.h, this program knows up to {}",
+    refuse(fmt::format("made for version {} of broadmark_plugin.h, this program supports up to {}",
                        plugin->version, BROADMARK_PLUGIN_VERSION));
   }
   if (plugin->algorithm_count == 0) refuse("has no algorithms");

@@ -112,7 +112,7 @@ void applyNamePart(Case& test_case, const std::string& part, const std::string& 
     test_case.threads = parseThreadCount(part.substr(1));
   } else {
     throw InputError(fmt::format(
-        "'{}': '{}' is not {}{}an answer ({}, rays:1000), KEY=VALUE", name, part,
+        "'{}': '{}' is not {}{}an answer ({}, rays:1000) or KEY=VALUE", name, part,
         traits.vectorised ? fmt::format("an instruction set ({}), ", fmt::join(kIsas.names(), ", "))
                           : "",
         traits.parallel ? "a number of threads (t4), " : "",

@@ -121,8 +121,9 @@ Description descriptionFrom(const Json& json, const std::string& command) {
   const JsonFields fields(json, "description");
   const auto version = fields.integer<int>("version", 1);
   if (version > kProtocolVersion) {
-    throw InputError(fmt::format("made for version {} of the protocol, this program knows up to {}",
-                                 version, kProtocolVersion));
+    throw InputError(
+        fmt::format("made for version {} of the protocol, this program supports up to {}", version,
+                    kProtocolVersion));
   }
   requireKnownKeys(json, fields.name(),
                    {"version", "id", "family", "summary", "principle", "time", "space", "source",

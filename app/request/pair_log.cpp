@@ -119,7 +119,7 @@ class Reader {
     if (!list.is_array()) lines_.fail(fmt::format("\"{}\" is not an array of pairs", key));
     for (const Json& pair : list) {
       if (!pair.is_array() || pair.size() != 2) {
-        lines_.fail(fmt::format("\"{}\" holds something that is no pair [a, b]", key));
+        lines_.fail(fmt::format("\"{}\" holds something that is not a pair [a, b]", key));
       }
       add(frame, number(lines_, pair[0], "a"), number(lines_, pair[1], "b"), key == "ended");
     }

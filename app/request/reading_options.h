@@ -41,8 +41,8 @@ struct ReadingOptions : Parametrised {
            "continuous collision detection",
            &swept});
     visit({"widen",
-           "grow each box by half of this distance on every side, rounded outward: pairs of bodies "
-           "no farther apart than this distance on any axis",
+           "grow each box by half of this distance on every side, rounded outward: bodies no "
+           "farther apart than this distance on every axis are pairs",
            &widen, 0, kMaxWidening});
     visit({"periodic",
            "also report pairs across the boundaries of a periodic box: the one that the source "

@@ -44,7 +44,7 @@ void addCases(PlanEntry& entry, const std::vector<Case>& selected, const CaseOpt
     return;
   }
   if (!options.algorithms.empty()) {
-    throw InputError("--algorithm: the source names its own algorithm");
+    throw InputError("--algorithm: the source already states its algorithm");
   }
   // A case of a results file already has its device and answer.
   if (entry.known) return;

@@ -40,7 +40,7 @@ class TimedOutVariants {
     const auto found = smallest_.find(key(result, test_case));
     if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
     result.status = Status::timeout;
-    result.reason = fmt::format("not run: crossed the time limit with {}",
+    result.reason = fmt::format("not run: exceeded the time limit with {}",
                                 counted(found->second, "body", "bodies"));
     return true;
   }

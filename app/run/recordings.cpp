@@ -152,7 +152,7 @@ void makeDirectory(const fs::path& directory) {
   fs::create_directories(directory, error);
   if (error) {
     throw InputError(
-        fmt::format("{}: cannot create the directory: {}", directory.string(), error.message()));
+        fmt::format("{}: cannot create the folder: {}", directory.string(), error.message()));
   }
   for (const fs::path& created : missing) syncName(created);
 }

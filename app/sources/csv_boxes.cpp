@@ -212,7 +212,7 @@ Columns columnsIn(const LineReader& lines, char delimiter,
     const std::string meaning = meaningOf(name);
     const auto [same, is_new] = columns.by_meaning.try_emplace(meaning, columns.names.size());
     if (!is_new && !meaning.empty()) {
-      lines.fail(fmt::format("columns {} and {} hold the same",
+      lines.fail(fmt::format("columns {} and {} have the same meaning",
                              imports::quoted(columns.names[same->second]), imports::quoted(name)));
     }
     constexpr std::size_t kMaxShown = 60;

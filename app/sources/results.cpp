@@ -27,7 +27,7 @@ std::string someIds(const Results& results) {
   }
   if (results.cases.empty()) return "it has no cases";
   if (wrong.empty()) {
-    return fmt::format("all answers are right; e.g. '{}'", results.cases.front().id);
+    return fmt::format("all answers are correct; e.g. '{}'", results.cases.front().id);
   }
   std::string text = "with wrong answers:";
   for (std::size_t i = 0; i < std::min(wrong.size(), kMaxShown); ++i) {

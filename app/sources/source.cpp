@@ -108,8 +108,8 @@ InputError unknownSource(NamedSource& source) {
   if (!source.isJson()) {
     static_cast<void>(openForReading(source.path()));  // throws if that is the reason
     return InputError(
-        fmt::format("{}: its content is of no known kind; expected: {}; --format "
-                    "names that of imported files",
+        fmt::format("{}: its content has no known format; expected: {}; --format sets the format "
+                    "of imported files",
                     source.name(), sourceKindsText()));
   }
   const std::string& schema = source.schema();
@@ -249,7 +249,7 @@ InputError notImported(const std::string& name) {
   if (imports::expandName(file).empty()) return because("matches no file");
   // Throws if that is the reason.
   if (!fs::exists(status) || fs::is_regular_file(status)) static_cast<void>(openForReading(file));
-  return because("its content is of no known kind");
+  return because("its content has no known format");
 }
 
 std::string importText(const Source& source) {

@@ -109,7 +109,9 @@ class XyzFormat final : public imports::TextFormat {
     const auto values = valuesIn(comment_);
     const auto properties = values.find("properties");
     if (properties == values.end()) {
-      if (statesProperties(comment_)) lines.fail("Properties is not a key of its own here");
+      if (statesProperties(comment_)) {
+        lines.fail("Properties must be a key of its own, not part of another value");
+      }
       columns_ = plainColumns();
       addOnce(summary_.used, "columns 2 to 4 as x, y, z");
     } else {

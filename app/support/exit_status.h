@@ -28,7 +28,7 @@ inline constexpr NameTable kExitStatuses{
      {exit_status::wrong_answer, "a wrong answer, or an algorithm that failed"},
      {exit_status::bad_input, "bad usage or bad input"},
      {exit_status::regression, "a regression (compare, duel)"},
-     {exit_status::timeout, "a case crossed a time limit"},
+     {exit_status::timeout, "a case exceeded a time limit"},
      {exit_status::interrupted, "interrupted (Ctrl-C)"}}};
 
 /// Exit status of a command that ran cases with these statuses. A case that cannot run on this

@@ -28,7 +28,7 @@ FileDescriptor serveParent() {
   int type = 0;
   socklen_t size = sizeof type;
   if (::getsockopt(STDIN_FILENO, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
-    throw InputError("this command is internal: it is started by broadmark");
+    throw InputError("this command is internal: only broadmark starts it");
   }
   FileDescriptor socket(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
   const FileDescriptor nothing(::open("/dev/null", O_RDONLY | O_CLOEXEC));

@@ -48,7 +48,7 @@ void OutputFiles::addSource(const std::filesystem::path& path) {
 void OutputFiles::require(const std::string& option, const std::filesystem::path& path) {
   const auto [other, is_free] = used_by_.emplace(canonicalPath(path), option);
   if (!is_free) {
-    throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
+    throw InputError(fmt::format("{}: {}: already used for {}: choose another name", option,
                                  path.string(), other->second));
   }
   requireOutput(path);

@@ -27,8 +27,8 @@ async function isIsolated() {
 // one, "" if it is not.
 async function withProgram(start) {
   if (!WebAssembly.validate(kVectorModule)) {
-    return start("plain.js", "This browser has no vectors (simd128): one thread, scalar code.");
+    return start("plain.js", "This browser does not support vector instructions (simd128): one thread, scalar code.");
   }
   if (await isIsolated()) return start("broadmark.js", "");
-  return start("plain.js", "This page has no threads, which browsers grant over https: one thread, scalar code.");
+  return start("plain.js", "This page cannot use threads, which browsers allow only over https: one thread, scalar code.");
 }

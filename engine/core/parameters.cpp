@@ -57,8 +57,8 @@ void setChoice(const Parameter& parameter, std::string_view text, Choice& choice
 
 std::string_view currentParameterName(std::string_view name) {
   constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {
-      {"crowded", "split_threshold"},
-      {"from_scratch_cost", "full_search_cost_scale"},
+      {"crowded", "split_threshold"}, {"from_scratch_cost", "full_search_cost_scale"},
+      {"most_bodies", "max_bodies"},  {"most_contacts", "max_contacts"},
       {"way", "work_division"},
   };
   for (const auto& [former, current] : kFormerNames) {

@@ -63,7 +63,7 @@ PeriodicBox parsePeriodic(std::string_view text) {
   PeriodicBox box;
   const auto fail = [&] {
     throw InputError(fmt::format(
-        "'{}' is no periodic box: LOW:HIGH for each of three axes is expected, or - for an axis "
+        "'{}' is not a periodic box: LOW:HIGH for each of three axes is expected, or - for an axis "
         "that is not periodic, as in 0:10,0:10,-",
         text));
   };

@@ -73,7 +73,7 @@ void warnOfThreads(Texts& warnings, const MachineState& machine, int threads) {
 
 void warnOfSelfTiming(Texts& warnings, const Algorithm& algorithm) {
   if (!algorithm.traits.self_timed) return;
-  warnings.push_back(fmt::format("{}: times are those that the program reports", algorithm.id));
+  warnings.push_back(fmt::format("{}: times are reported by the program itself", algorithm.id));
 }
 
 void warnOfBuilds(Texts& warnings, const Environment& environment, const Algorithm& algorithm) {

@@ -116,7 +116,7 @@ Recording::Recording(FileDescriptor file, std::string name)
 void Recording::read(std::uint64_t offset, std::span<std::byte> bytes) const {
   const std::uint64_t end = offset + readAll(file_.get(), bytes, offset);
   if (end < offset + bytes.size()) {
-    if (errno == 0) throw InputError(fmt::format("{}: ends at byte {}", name_, end));
+    if (errno == 0) throw InputError(fmt::format("{}: the file ends at byte {}", name_, end));
     throw InputError(
         fmt::format("{}: cannot read at byte {}: {}", name_, end, std::strerror(errno)));
   }
@@ -167,7 +167,7 @@ OriginalRecording::OriginalRecording(FileDescriptor file, std::string name)
   const std::uint64_t expected = recordingBytes(scene());
   if (bytes() != expected) {
     throw InputError(fmt::format(
-        "{}: {} bytes is too {}: {} objects and {} frames take 304 + 32·{}·(1 + {}) = {} bytes",
+        "{}: {} bytes is too {}: {} bodies and {} frames take 304 + 32·{}·(1 + {}) = {} bytes",
         this->name(), bytes(), bytes() < expected ? "short" : "long", scene().objects,
         scene().frames, scene().objects, scene().frames, expected));
   }

@@ -48,20 +48,21 @@ Recording2Reader::Recording2Reader(FileDescriptor file, std::string name)
 void Recording2Reader::open() {
   constexpr std::uint64_t kMinBytes = sizeof(RecordingStart) + sizeof(RecordingEnd);
   if (bytes() < kMinBytes) {
-    throwInputError(name(), "{} bytes is too short: a recording 2 has at least {}", bytes(),
-                    kMinBytes);
+    throwInputError(name(), "{} bytes is too short: a .broadmark recording has at least {}",
+                    bytes(), kMinBytes);
   }
   RecordingStart start;
   read(0, std::as_writable_bytes(std::span(&start, 1)));
   if (start.magic != kRecording2Magic) {
-    throwInputError(name(), "byte 0: is not '{}': not a recording 2",
+    throwInputError(name(), "byte 0: is not '{}': not a .broadmark recording",
                     fmt::join(kRecording2Magic, ""));
   }
   const std::uint64_t last = bytes() - sizeof(RecordingEnd);
   RecordingEnd end;
   read(last, std::as_writable_bytes(std::span(&end, 1)));
   if (end.magic != kRecording2Magic) {
-    throwInputError(name(), "byte {}: does not end as a recording 2: cut short, or not finished?",
+    throwInputError(name(),
+                    "byte {}: does not end as a .broadmark recording: cut short, or not finished?",
                     last);
   }
   constexpr std::uint64_t kMaxHeaderBytes = 1 << 28;  // scene parameters may take megabytes
@@ -96,7 +97,7 @@ std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t ind
   if (offset + sizeof(PackedBox) * std::uint64_t{scene.objects} + index_bytes +
           filterCountBytes(scene) >
       last) {
-    throwInputError(name(), "{} bytes is too short for {} objects and {} frames", bytes(),
+    throwInputError(name(), "{} bytes is too short for {} bodies and {} frames", bytes(),
                     scene.objects, scene.frames);
   }
   if (index_offset != last - index_bytes) {

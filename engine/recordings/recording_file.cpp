@@ -46,11 +46,11 @@ std::vector<std::byte> makeHeader(const SceneInfo& scene) {
   constexpr auto kMax = static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max());
   requireNames(scene);
   if (scene.objects > kMax || scene.frames > kMax) {
-    throw InputError(fmt::format("cannot record {} objects and {} frames: at most {} each",
+    throw InputError(fmt::format("cannot record {} bodies and {} frames: at most {} each",
                                  scene.objects, scene.frames, kMax));
   }
   if (scene.objects == 0 && scene.frames > kMaxEmptyFrames) {
-    throw InputError(fmt::format("cannot record {} frames of no objects: at most {} are allowed",
+    throw InputError(fmt::format("cannot record {} frames without bodies: at most {} are allowed",
                                  scene.frames, kMaxEmptyFrames));
   }
   RecordingHeader header{};
@@ -86,10 +86,10 @@ SceneInfo parseHeader(const RecordingHeader& header, const std::string& name) {
   scene.name = headerText(header.name, "scene name", offsetof(RecordingHeader, name), name);
   scene.object_type =
       headerText(header.object_type, "object type", offsetof(RecordingHeader, object_type), name);
-  scene.objects = headerCount(header.objects, "objects", offsetof(RecordingHeader, objects), name);
+  scene.objects = headerCount(header.objects, "bodies", offsetof(RecordingHeader, objects), name);
   scene.frames = headerCount(header.frames, "frames", offsetof(RecordingHeader, frames), name);
   if (scene.objects == 0 && scene.frames > kMaxEmptyFrames) {
-    throw InputError(fmt::format("{}: byte {}: {} frames of no objects: at most {} are allowed",
+    throw InputError(fmt::format("{}: byte {}: {} frames without bodies: at most {} are allowed",
                                  name, offsetof(RecordingHeader, frames), scene.frames,
                                  kMaxEmptyFrames));
   }

@@ -87,8 +87,7 @@ class Tree {
 class EnlargedBoxes final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"enlargement",
-           "what a box is enlarged by when its body has left it: at most this, in world units",
+    visit({"enlargement", "maximum margin added to a box that its body left, in world units",
            &max_enlargement_, 0, 1e6});
   }
 
@@ -153,7 +152,7 @@ class EnlargedBoxes final : public BroadPhase {
   [[nodiscard]] std::string validate() const override {
     for (std::uint32_t body = 0; body < boxes_.size(); ++body) {
       if ((proxies_[body] == kNoProxy) != isEmpty(boxes_[body]))
-        return "the trees have not one box for each body";
+        return "the number of boxes in the trees is not that of bodies";
       if (!isEmpty(boxes_[body]) && !contains(fat_boxes_[body], boxes_[body]))
         return "a body has left its enlarged box";
     }

@@ -98,7 +98,7 @@ class JoltBody : public PhysicsBody {
     body_settings.mMassPropertiesOverride.mMass = static_cast<float>(description.mass);
     body_ = interface.CreateBody(body_settings);
     if (body_ == nullptr) {
-      throw InputError("engine 'jolt': more bodies than its parameter most_bodies allows");
+      throw InputError("engine 'jolt': more bodies than its parameter max_bodies allows");
     }
     interface.AddBody(id(), JPH::EActivation::Activate);
   }
@@ -172,9 +172,9 @@ class JoltEngine final : public PhysicsEngine {
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"most_bodies", "maximum number of bodies, including walls", &max_bodies_, 16,
+    visit({"max_bodies", "maximum number of bodies, including walls", &max_bodies_, 16,
            JPH::BodyID::cMaxBodyIndex});
-    visit({"most_contacts", "maximum number of pairs of nearby bodies", &max_contacts_, 16,
+    visit({"max_contacts", "maximum number of pairs of nearby bodies", &max_contacts_, 16,
            100'000'000});
   }
 
@@ -220,7 +220,7 @@ class JoltEngine final : public PhysicsEngine {
         system_->Update(static_cast<float>(settings_.time_step),
                         static_cast<int>(settings_.substeps), &memory_, &jobs_);
     if (error != JPH::EPhysicsUpdateError::None) {
-      throw InputError("engine 'jolt': more contacts than its parameter most_contacts allows");
+      throw InputError("engine 'jolt': more contacts than its parameter max_contacts allows");
     }
   }
 

@@ -152,7 +152,7 @@ class JoltTreeBodies {
     manager_.DeactivateBodies(ids.data(), static_cast<int>(ids.size()));
   }
 
-  /// Passes the new bounds of bodies to the trees, whose modifications are locked. Several threads
+  /// Passes the new bounds of bodies to the trees; modifications must be locked. Several threads
   /// may do so at once, for different bodies.
   void notifyMoved(JPH::BodyID* ids, std::size_t count) {
     if (count == 0) return;

@@ -80,8 +80,9 @@ class BoxBrush final : public CountedBrush<100> {
 class RandomBrush final : public Brush {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"density", "share of the box filled by bodies of unit shape and this scale", &density_,
-           1e-6, 1});
+    visit({"density",
+           "share of the box's volume that bodies fill, each counted as a cube with edge 'scale'",
+           &density_, 1e-6, 1});
     visitSize(size_, visit);
   }
   [[nodiscard]] double count(double body_volume) const override {

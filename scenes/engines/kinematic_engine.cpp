@@ -264,7 +264,7 @@ class KinematicEngine final : public PhysicsEngine {
 }  // namespace
 
 EngineEntry entry() {
-  return {{"kinematic", "bodies bounce at the walls and pass through each other: fast",
+  return {{"kinematic", "bodies bounce off the walls and pass through each other: fast",
            Dynamics::passing},
           makeEntry<PhysicsEngine, KinematicEngine>};
 }

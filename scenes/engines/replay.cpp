@@ -62,7 +62,7 @@ class ReplaySimulation final : public Simulation {
            kMaxFrames});
     visit({"object_type", "shape of the bodies", &object_type_});
     visit({"engine", "engine that replays the recording", &engine_});
-    visit({"input", "recording to replay, or a directory that contains it under its standard name",
+    visit({"input", "recording to replay, or a folder that contains it under its standard name",
            &input_});
   }
 
@@ -142,9 +142,8 @@ class ReplaySimulation final : public Simulation {
           engine_.value, listing().id, fmt::join(extensions, " and ")));
     }
     if (input_.empty()) {
-      throw InputError(
-          fmt::format("--engine {}: name the recording to replay, or its directory, with --input",
-                      engine_.value));
+      throw InputError(fmt::format(
+          "--engine {}: name the recording to replay, or its folder, with --input", engine_.value));
     }
     const std::vector<Candidate> available = candidates();
     if (objects_ % entry_.bodies_per_recorded != 0) {

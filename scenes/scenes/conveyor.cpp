@@ -29,8 +29,8 @@ class Conveyor final : public Scene {
     visit({"belts", "number of belts, each faster than the one before", &belts_, 1, 12});
     visit({"belt_width", "edge of a belt's square cross-section, in sides of the world",
            &belt_width_, 0, 0.5});
-    visit({"belt_distance", "distance of parallel belts, in sides of the world", &belt_distance_, 0,
-           0.9});
+    visit({"belt_distance", "distance between parallel belts, in sides of the world",
+           &belt_distance_, 0, 0.9});
   }
 
   void prepare(const Settings&, Random&) override { riders_.clear(); }

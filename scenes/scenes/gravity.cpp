@@ -65,7 +65,7 @@ class Gravity final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {{"gravity", "Gravity", "a strong gravity that keeps changing direction"},
+  return {{"gravity", "Gravity", "strong gravity that keeps changing direction"},
           makeEntry<Scene, Gravity>};
 }
 

@@ -42,11 +42,12 @@ void Settings::visit(const ParameterVisitor& visit) {
   visit({"object_type", "shape of the bodies", &object_type});
   visit({"engine", "physics engine that moves the bodies", &engine});
   visit({"seed", "seed of the random numbers", &seed, 0, 4'294'967'295});
-  visit({"density", "share of the world's volume filled by bodies of unit shape and this scale",
+  visit({"density",
+         "share of the world's volume that bodies fill, each counted as a cube with edge 'scale'",
          &density, 1e-6, 1, kStart});
   visit({"scale", "factor on the size of all bodies, in world units", &scale, 1e-3, 1e3, kStart});
   visit({"mass", "mass of a body", &mass, 1e-3, 1e6, kStart});
-  visit({"initial_radius", "radius of the ball that bodies start in, per side of the world",
+  visit({"initial_radius", "radius of the ball in which bodies start, in sides of the world",
          &initial_radius, 0, 1, kStart});
   visit({"initial_speed", "largest speed of a launched body, in sides of the world per second",
          &initial_speed, 0, 10, kStart});

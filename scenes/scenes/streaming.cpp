@@ -28,7 +28,7 @@ class Streaming final : public Scene {
 
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"tiles", "tiles of the level along each horizontal side", &tiles_, 1, 1000});
-    visit({"view", "tiles that are loaded in each direction from the viewer's", &view_, 0, 1000});
+    visit({"view", "tiles loaded in each direction around the viewer's tile", &view_, 0, 1000});
     visit({"batches", "frames over which a tile is loaded", &batches_, 1, 1'000'000});
     visit({"period", "frames of the viewer's round", &period_, 1, 1'000'000});
     visit({"movers", "share of the bodies that fly about", &movers_, 0, 1});

@@ -79,12 +79,12 @@ TEST(Kd, FindsPairsOfASceneThatNeverMoves) {
            [&](const BroadPhase& broad_phase, std::size_t frame) {
              EXPECT_EQ(structuralWork(broad_phase), 0U) << "in frame " << frame;
              auto counters = countersOf(broad_phase);
-             EXPECT_EQ(counters.at("moved bodies"), 0U);
+             EXPECT_EQ(counters.at("moves"), 0U);
              // All pairs are searched for in the first frame, none afterwards.
              const std::uint64_t right = rightPairs(frames[0]).size();
-             EXPECT_EQ(counters.at("pairs kept"), frame == 1 ? 0 : right);
+             EXPECT_EQ(counters.at("pairs retained"), frame == 1 ? 0 : right);
              EXPECT_EQ(counters.at("subtrees skipped in searches"), frame == 1 ? 0U : 1U);
-             EXPECT_EQ(counters.at("boxes looked at") == 0, frame > 1);
+             EXPECT_EQ(counters.at("boxes tested") == 0, frame > 1);
            });
   }
 }
@@ -100,10 +100,10 @@ TEST(Kd, StaysIncrementalWhereLittleMoves) {
            [](const BroadPhase& broad_phase, std::size_t frame) {
              if (frame == 1) return;
              auto counters = countersOf(broad_phase);
-             EXPECT_GT(counters.at("moved bodies"), 10U);
-             EXPECT_LT(counters.at("moved bodies"), 200U);
+             EXPECT_GT(counters.at("moves"), 10U);
+             EXPECT_LT(counters.at("moves"), 200U);
              EXPECT_LT(counters.at("moves between nodes"), 200U);
-             EXPECT_GT(counters.at("pairs kept"), 500U);
+             EXPECT_GT(counters.at("pairs retained"), 500U);
              EXPECT_GT(counters.at("subtrees skipped in updates"), 3U);
              EXPECT_GT(counters.at("subtrees skipped in searches"), 3U);
            });
@@ -136,8 +136,8 @@ TEST(Kd, SearchesOnlyAroundMoversInStaticGeometry) {
       ASSERT_EQ(run.broadPhase().validate(), "") << "in frame " << i;
       auto counters = countersOf(run.broadPhase());
       EXPECT_EQ(counters.at("bodies at rest"), kStatic);
-      EXPECT_EQ(counters.at("moved bodies"), i == 5 ? 0 : kMovers);
-      EXPECT_LT(counters.at("boxes looked at"), i == 5 ? 1 : 500 * kMovers) << "in frame " << i;
+      EXPECT_EQ(counters.at("moves"), i == 5 ? 0 : kMovers);
+      EXPECT_LT(counters.at("boxes tested"), i == 5 ? 1 : 500 * kMovers) << "in frame " << i;
       EXPECT_EQ(counters.at("partitions"), 0U);
     }
   }
@@ -298,7 +298,7 @@ TEST(Kd, IsExactWithAMargin) {
   }
   replay("kd", 1, {{"objects_per_leaf", "30"}, {"margin", "0.11"}}, frames,
          [](const BroadPhase& broad_phase, std::size_t frame) {
-           EXPECT_LT(countersOf(broad_phase).at("moved bodies"), 100U) << "in frame " << frame;
+           EXPECT_LT(countersOf(broad_phase).at("moves"), 100U) << "in frame " << frame;
            EXPECT_EQ(broad_phase.margin(), 0);
          });
 }

@@ -144,7 +144,9 @@ TEST(Tide, TestsCandidatesWithBodiesThatComeAndGo) {
   }
 }
 
-bool usesGrid(TestRun& test_run) { return countersOf(test_run.broadPhase()).contains("looks"); }
+bool usesGrid(TestRun& test_run) {
+  return countersOf(test_run.broadPhase()).contains("cell queries");
+}
 
 // Few bodies move, then many, then few again: a grid is rebuilt once that pays.
 TEST(Tide, SwitchesToFullSearchAndBack) {
@@ -214,7 +216,7 @@ TEST(Tide, DoesNothingWhenNothingMoves) {
     ASSERT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
     const Counters counters = countersOf(test_run.broadPhase());
     EXPECT_EQ(counters.at("tests"), 0U);
-    EXPECT_EQ(counters.at("looks"), 0U);
+    EXPECT_EQ(counters.at("cell queries"), 0U);
   }
 }
 

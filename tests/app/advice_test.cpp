@@ -159,10 +159,10 @@ TEST(AdviceText, AdmitsThatTwoAreLevel) {
     return textOf({.finalists = {finalistOf("kd"), finalistOf("sap", ratio)}});
   };
   EXPECT_THAT(text({1.005, {0.99, 1.015}}),
-              AllOf(HasSubstr("kd is among the fastest"), HasSubstr("level with it")));
+              AllOf(HasSubstr("kd is among the fastest"), HasSubstr("as fast as it")));
   EXPECT_THAT(text({1.2, {0.9, 1.5}}),
               AllOf(HasSubstr("kd is among the fastest"), HasSubstr("indistinguishable from it")));
-  EXPECT_THAT(textOf({.finalists = {finalistOf("kd")}}), HasSubstr("There is no second."));
+  EXPECT_THAT(textOf({.finalists = {finalistOf("kd")}}), HasSubstr("There is no runner-up."));
 }
 
 TEST(AdviceText, StatesParametersAndWhatTheyGain) {
@@ -183,7 +183,7 @@ TEST(AdviceText, StatesParametersAndWhatTheyGain) {
 TEST(AdviceText, NamesWrongAlgorithms) {
   const std::string text =
       textOf({.finalists = {}, .untuned = {}, .wrong = {"mine: mismatch: frame 3: 1 missed"}});
-  EXPECT_THAT(text, AllOf(HasSubstr("no algorithm gave right answers"),
+  EXPECT_THAT(text, AllOf(HasSubstr("no algorithm gave correct answers"),
                           HasSubstr("DISQUALIFIED: mine: mismatch: frame 3")));
 }
 

@@ -68,7 +68,7 @@ void expectRefusal(const std::function<void()>& call, const std::string& words) 
 TEST(CPlugin, WhatCannotWorkIsRefused) {
   expectRefusal([] { algorithmsOf(nullptr, "mine.so"); }, "returns null");
   expectRefusal([] { load(table(), sizeof(broadmark_algorithm), 0); }, "version 0");
-  expectRefusal([] { load(table(), sizeof(broadmark_algorithm), 2); }, "knows up to 1");
+  expectRefusal([] { load(table(), sizeof(broadmark_algorithm), 2); }, "supports up to 1");
   const broadmark_plugin empty{BROADMARK_PLUGIN_VERSION, 0, sizeof(broadmark_algorithm), nullptr};
   expectRefusal([&] { algorithmsOf(&empty, "mine.so"); }, "has no algorithms");
   broadmark_algorithm incomplete = table();

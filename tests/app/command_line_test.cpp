@@ -226,7 +226,7 @@ TEST(Session, UnknownNamesAreSuggested) {
   expectSessionRefused({"--param", "kd:=5"}, {"--param", "'kd:=5'"});
   expectSessionRefused({"--param", "kd:a=1", "--param", "kd:a=2"}, {"'kd:a'", "twice"});
   expectSessionRefused({"--param", "a=1", "--param", "a=2"}, {"--param", "'a'", "twice"});
-  expectSessionRefused({"--objects", ""}, {"--objects", "names nothing"});
+  expectSessionRefused({"--objects", ""}, {"--objects", "is an empty list"});
   expectSessionRefused({"--algorithm", ","}, {"--algorithm", "','"});
   expectSessionRefused({"--screenshot", "a.txt"}, {"--screenshot", "'a.txt'", ".png"});
   expectRefused({"bake", "--thread", "2", "--output", "o"}, {"bake", "'--threads'"});
@@ -312,6 +312,16 @@ TEST(Commands, AreParsedWithoutBeingRun) {
   EXPECT_TRUE(parseCommandLine({"verify", "missing.aabbs"}));
   EXPECT_TRUE(parseCommandLine({"list", "no such kind"}));
   EXPECT_TRUE(parseCommandLine({"--headless", "missing.aabbs"}));
+}
+
+TEST(Commands, ErrorsNameArgumentsAsHelpDoes) {
+  expectRefused({"verify"}, {"verify: no FILE given (see 'broadmark verify --help')"});
+  expectRefused({"convert", "a.aabbs"}, {"no OUT given"});
+  expectRefused({"verify", "a.aabbs", "--json"}, {"--json: a value (FILE) is missing"});
+  expectRefused({"verify", "a.aabbs", "--json", "b", "--json", "c"},
+                {"--json: given more than once"});
+  expectRefused({"torture", "--only-sources"}, {"--only-sources: only with SOURCE"});
+  expectSessionRefused({"--queries", "rays:9", "--answer", "events"}, {"cannot be combined with"});
 }
 
 TEST(Commands, HelpIsWholeAndSucceeds) {

@@ -284,9 +284,9 @@ TEST_F(GltfImports, SparseAccessorsReplaceElements) {
   EXPECT_THAT(pointsOf(zeros), ElementsAre(Point{0, 0, 0}, Point{0, 0, 0}, Point{0, 0, 0}));
 
   for (const auto& [indices, what] :
-       {std::pair(std::vector<std::uint8_t>{0, 3}, "index 3 of 3 elements"),
-        std::pair(std::vector<std::uint8_t>{2, 1}, "index 1 behind 2"),
-        std::pair(std::vector<std::uint8_t>{1, 1}, "index 1 behind 1"),
+       {std::pair(std::vector<std::uint8_t>{0, 3}, "index 3, but there are 3 elements"),
+        std::pair(std::vector<std::uint8_t>{2, 1}, "index 1 after 2"),
+        std::pair(std::vector<std::uint8_t>{1, 1}, "index 1 after 1"),
         std::pair(std::vector<std::uint8_t>{1}, "2 indices need 2 bytes")}) {
     GltfFile bad;
     const auto positions = bad.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0},
@@ -325,7 +325,7 @@ TEST_F(GltfImports, PrimitivesOfEachMode) {
   EXPECT_EQ(points.topology.vertices, 3U);
   EXPECT_THAT(points.topology.triangles, IsEmpty());
   EXPECT_THAT(points.summary.left_out, ElementsAre("3 points: --elements vertices has them"));
-  EXPECT_THAT(refusal(rowOf(5, {{"mode", 4}})), HasSubstr("5 vertices in a row: a multiple of 3"));
+  EXPECT_THAT(refusal(rowOf(5, {{"mode", 4}})), HasSubstr("5 vertices: a multiple of 3"));
   EXPECT_THAT(refusal(rowOf(5, {{"mode", 1}})), HasSubstr("a multiple of 2"));
   EXPECT_THAT(refusal(rowOf(3, {{"mode", 7}})), HasSubstr("mode: an integer from 0 to 6"));
 }
@@ -354,7 +354,7 @@ TEST_F(GltfImports, IndicesOfEachType) {
   beyond.json["meshes"][0]["primitives"][0]["indices"] =
       beyond.accessor<Index>("SCALAR", {0, 1, 3});
   EXPECT_THAT(refusal(beyond),
-              HasSubstr("a.gltf: meshes[0]: primitives[0]: index 2 is 3, of 3 ver"));
+              HasSubstr("a.gltf: meshes[0]: primitives[0]: index 2 is 3, but there are 3 ver"));
 }
 
 TEST_F(GltfImports, ARepeatedVertexJoinsStrips) {
@@ -444,7 +444,7 @@ TEST_F(GltfImports, DamagedNodes) {
               HasSubstr("nodes[2]: nodes[1] is its child, but also one of nodes[0]"));
   EXPECT_THAT(refused({{{"children", {1, 1}}}, {{"mesh", 0}}}), HasSubstr("but also one of"));
   EXPECT_THAT(refused({{{"children", {1}}}, {{"mesh", 0}}}, {{"scenes", {{{"nodes", {1}}}}}}),
-              HasSubstr("scenes[0]: nodes[1] is no root: it is a child of nodes[0]"));
+              HasSubstr("scenes[0]: nodes[1] is not a root: it is a child of nodes[0]"));
   EXPECT_THAT(refused({{{"mesh", 0}}}, {{"scenes", {{{"nodes", {0, 0}}}}}}),
               HasSubstr("scenes[0]: lists nodes[0] twice"));
   EXPECT_THAT(refused({{{"mesh", 0}, {"children", {5}}}}),
@@ -561,9 +561,10 @@ TEST_F(GltfImports, SkinsHaveInverseBindMatricesAndSeveralSets) {
 
   GltfFile short_matrices = file;
   short_matrices.json["accessors"].back()["count"] = 1;
-  EXPECT_THAT(refusal(short_matrices), HasSubstr("skins[0]: 1 inverse bind matrices of 2 joints"));
+  EXPECT_THAT(refusal(short_matrices),
+              HasSubstr("skins[0]: 1 inverse bind matrices, but 2 joints"));
   attributes["WEIGHTS_1"] = file.floats("VEC4", {.5F, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
-  EXPECT_THAT(refusal(file), HasSubstr("element 1: joint 9, of 2"));
+  EXPECT_THAT(refusal(file), HasSubstr("element 1: joint 9, but there are 2"));
   attributes.erase("WEIGHTS_1");
   EXPECT_THAT(refusal(file), HasSubstr("'WEIGHTS_1' is missing"));
   attributes.erase("JOINTS_1");
@@ -593,7 +594,7 @@ TEST_F(GltfImports, MorphTargetsDisplaceVertices) {
                    animated.floats("SCALAR", {0, 0, 0, 2, 0, 1}));
   EXPECT_THAT(contents(animated, {{"frame_rate", "2"}}).track(1, 0), ElementsAre(1, 4, 7));
   EXPECT_THAT(contents(animated, {{"frame_rate", "2"}}).track(2, 2), ElementsAre(0, -2, -4));
-  // Of each key: tangents in, values, tangents out, for all targets each.
+  // For each key: in-tangents, values and out-tangents, each of all targets.
   GltfFile cubic = file;
   cubic.animate(0, "weights", cubic.accessor<std::uint8_t>("SCALAR", {0, 2}),
                 cubic.accessor<std::uint8_t>(
@@ -603,13 +604,13 @@ TEST_F(GltfImports, MorphTargetsDisplaceVertices) {
   EXPECT_THAT(contents(cubic, {{"frame_rate", "1"}}).track(1, 0), ElementsAre(1, 5.5F, 4));
 
   file.json["nodes"][0]["weights"] = {1};
-  EXPECT_THAT(refusal(file), HasSubstr("nodes[0]: 1 weights of 3 morph targets"));
+  EXPECT_THAT(refusal(file), HasSubstr("nodes[0]: 1 weights, but 3 morph targets"));
   const std::size_t output = animated.json["animations"][0]["samplers"][0]["output"];
   animated.json["accessors"][output]["count"] = 4;
-  EXPECT_THAT(refusal(animated), HasSubstr("nodes[0]: 2 weights of 3 morph targets"));
+  EXPECT_THAT(refusal(animated), HasSubstr("nodes[0]: 2 weights, but 3 morph targets"));
   file.json["nodes"][0].erase("weights");
   file.json["meshes"][0]["weights"] = {1, 1};
-  EXPECT_THAT(refusal(file), HasSubstr("meshes[0]: 2 weights of 3 morph targets"));
+  EXPECT_THAT(refusal(file), HasSubstr("meshes[0]: 2 weights, but 3 morph targets"));
 }
 
 // ---- Animations.
@@ -787,7 +788,7 @@ TEST_F(GltfImports, DamagedAnimations) {
   EXPECT_THAT(refused("rotation", {0}, "VEC4", {1, 1, 1, 1}), HasSubstr("of length 2"));
   EXPECT_THAT(refused("color", {0, 1}, "VEC3", two), HasSubstr("path 'color'"));
   EXPECT_THAT(refused("translation", {0, 1e30F}, "VEC3", two), HasSubstr("--frame-rate"));
-  EXPECT_THAT(refused("weights", {0, 1}, "SCALAR", {0, 1}), HasSubstr("1 weights of 0 morph"));
+  EXPECT_THAT(refused("weights", {0, 1}, "SCALAR", {0, 1}), HasSubstr("1 weights, but 0 morph"));
   GltfFile matrix;
   matrix.triangleNode({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
   matrix.move(0, 1);
@@ -796,7 +797,7 @@ TEST_F(GltfImports, DamagedAnimations) {
   sampler.triangleNode();
   sampler.move(0, 1);
   sampler.json["animations"][0]["channels"][0]["sampler"] = 1;
-  EXPECT_THAT(refusal(sampler), HasSubstr("sampler 1 of 1"));
+  EXPECT_THAT(refusal(sampler), HasSubstr("sampler 1 does not exist: there are 1"));
 }
 
 TEST_F(GltfImports, ChannelsOfNoNode) {
@@ -833,7 +834,7 @@ TEST_F(GltfImports, BinaryFiles) {
   EXPECT_EQ(contentsOf(write("a.glb", file.text())).frames.at(0), expected);
   EXPECT_EQ(contentsOf(write("a.gltf", "\xEF\xBB\xBF" + file.text())).frames.at(0), expected);
   EXPECT_THAT(contentsOf(write("a.glb", file.binary() + "more")).summary.left_out,
-              ElementsAre("4 bytes behind the end"));
+              ElementsAre("4 bytes after the end"));
   // Unknown chunks are skipped.
   std::string more = file.binary() + GltfFile::number(4) + "MOREdata";
   more.replace(8, 4, GltfFile::number(more.size()));

@@ -220,13 +220,13 @@ TEST_F(Imports, MovingMeshes) {
 TEST_F(Imports, WhatIsWrongWithObj) {
   const auto wrong = [&](const std::string& text) { return complaint("a.obj", text); };
   EXPECT_THAT(wrong(""), HasSubstr("no vertices"));
-  EXPECT_THAT(wrong("v 1 2\n"), HasSubstr("line 1: a vertex has three"));
+  EXPECT_THAT(wrong("v 1 2\n"), HasSubstr("line 1: a vertex needs three"));
   EXPECT_THAT(wrong("v 1 2 x\n"), HasSubstr("'x'"));
   EXPECT_THAT(wrong("v 1 2 1e60\n"), HasSubstr("vertex 0"));
   EXPECT_THAT(wrong("v 1 2 3\nf 1 1 2\n"), HasSubstr("line 2: no vertex 2: there are 1"));
   EXPECT_THAT(wrong("v 1 2 3\nf 1 1 -2\n"), HasSubstr("no vertex -2"));
   EXPECT_THAT(wrong("v 1 2 3\nf 0 1 1\n"), HasSubstr("no vertex 0"));
-  EXPECT_THAT(wrong("v 1 2 3\nf 1 1\n"), HasSubstr("three vertices or more"));
+  EXPECT_THAT(wrong("v 1 2 3\nf 1 1\n"), HasSubstr("at least three vertices"));
   EXPECT_THAT(wrong("v 1 2 3\n"), HasSubstr("--elements"));
 }
 

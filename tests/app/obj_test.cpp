@@ -44,7 +44,7 @@ TEST_F(ObjImports, LinesAndPointsOfObj) {
   const auto edges = read("line.obj", kFour + "l 1 2\nl 2 3 4\n", {{"elements", "edges"}});
   EXPECT_EQ(edges->scene().objects, 3U);
   EXPECT_EQ(boxesOf(*edges, 0)[1], boxOf({1, 0, 0}, {1, 1, 0}));
-  EXPECT_THAT(refusal(readObj, kFour + "l 1\n"), HasSubstr("line 5: a line has two"));
+  EXPECT_THAT(refusal(readObj, kFour + "l 1\n"), HasSubstr("line 5: a line needs at least two"));
   EXPECT_THAT(refusal(readObj, kFour + "p 5\n"), HasSubstr("no vertex 5"));
   EXPECT_THAT(refusal(readObj, kFour + "p\n"), HasSubstr("line 5"));
 }

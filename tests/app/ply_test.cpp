@@ -76,7 +76,8 @@ TEST_F(PlyImports, PlyStripsAreTriangles) {
   // A strip that turns repeats vertices.
   EXPECT_THAT(readWith(readPly, header + "6 0 1 2 2 3 4").topology.triangles,
               ElementsAre(Triangle{0, 1, 2}, Triangle{2, 3, 4}));
-  EXPECT_THAT(refusal(readPly, header + "3 0 1 -2"), HasSubstr("names vertex -2, of 12"));
+  EXPECT_THAT(refusal(readPly, header + "3 0 1 -2"),
+              HasSubstr("names vertex -2, but there are 12"));
 }
 
 TEST_F(PlyImports, PlyEdgesAreLines) {
@@ -131,7 +132,8 @@ TEST_F(PlyImports, WhatIsWrongWithPly) {
   const auto wrong = [&](const std::string& elements, const std::string& rows) {
     return refusal(readPly, plyText(elements, rows));
   };
-  EXPECT_THAT(wrong(face, "3 0 1 3\n"), AllOf(HasSubstr("line 13"), HasSubstr("vertex 3, of 3")));
+  EXPECT_THAT(wrong(face, "3 0 1 3\n"),
+              AllOf(HasSubstr("line 13"), HasSubstr("vertex 3, but there are 3")));
   EXPECT_THAT(wrong(face, "3 0 1 -1\n"), HasSubstr("vertex -1"));
   EXPECT_THAT(wrong(face, "3 0 1 1.5\n"), HasSubstr("vertex 1.5"));
   EXPECT_THAT(wrong(face, "3 0 1 2 0\n"), HasSubstr("row 0 of 'face' has more numbers"));
@@ -176,7 +178,7 @@ TEST_F(PlyImports, WhatIsWrongWithPly) {
   EXPECT_THAT(readWith(readPly, plyText(face, "2 0 1\n")).summary.left_out,
               ElementsAre("faces of fewer than three corners: 1"));
   EXPECT_THAT(readWith(readPly, plyText(face, "3 0 1 2\n9 9\n")).summary.left_out,
-              ElementsAre("4 bytes behind the last element"));
+              ElementsAre("4 bytes after the last element"));
 }
 
 TEST_F(PlyImports, ACutPlyIsRefusedWhereverItIsCut) {

@@ -158,7 +158,7 @@ TEST_F(Recognition, UnknownFilesAreRefusedWithWhatIsRead) {
     return inputErrorOf([&] { throw notImported((directory_ / name).string()); });
   };
   EXPECT_THAT(reason("empty"), AllOf(HasSubstr("holds no file"), HasSubstr(".xyz")));
-  EXPECT_THAT(reason("a.dat"), HasSubstr("no known kind"));
+  EXPECT_THAT(reason("a.dat"), HasSubstr("no known format"));
   EXPECT_THAT(reason("missing.dat"), HasSubstr("No such file"));
   EXPECT_THAT(reason("missing*.dat"), HasSubstr("matches no file"));
 }

@@ -47,7 +47,7 @@ TEST_F(StlImports, TextOfStlIsReadHoweverItBegins) {
   }
   EXPECT_THAT(readWith(readStl, plain + "\n" + capitals).points, SizeIs(12)) << "two solids";
   EXPECT_THAT(readWith(readStl, plain + "made by hand\n").summary.left_out,
-              ElementsAre("13 bytes behind the last solid"));
+              ElementsAre("13 bytes after the last solid"));
   const std::string square = facetText("vertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\n");
   EXPECT_THAT(readWith(readStl, "solid\n" + square + "endsolid\n").topology.triangles, SizeIs(2));
 }
@@ -65,7 +65,7 @@ TEST_F(StlImports, BytesOfStlAreReadHoweverTheyBegin) {
     const std::string plain = stlBytes(header, 3);
     const MeshContents longer = readWith(readStl, plain + "trailer");
     EXPECT_THAT(longer.points, SizeIs(9));
-    EXPECT_THAT(longer.summary.left_out, ElementsAre("7 bytes behind the last facet"));
+    EXPECT_THAT(longer.summary.left_out, ElementsAre("7 bytes after the last facet"));
     for (std::size_t kept = 0; kept < plain.size(); ++kept) {
       EXPECT_THAT(refusal(readStl, plain.substr(0, kept)), HasSubstr(fmt::format("byte {}", kept)));
     }

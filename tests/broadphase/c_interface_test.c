@@ -216,7 +216,7 @@ static void test_queries(void) {
   const bm_hit first = hits.items[0];
   EXPECT(bm_cast(object, &ray, 1, BM_HITS_CLOSEST, &hits) == BM_OK);
   EXPECT(hits.starts[1] == 1 && hits.items[0].body == first.body);
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_cast(object, &ray, 1, 2, &hits), "hits: no value 2");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_cast(object, &ray, 1, 2, &hits), "hits: invalid value 2");
   ray.direction[1] = NAN;
   EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_cast(object, &ray, 1, 0, &hits), "direction");
 
@@ -256,15 +256,15 @@ static void test_errors(void) {
   bm_default_options(&options);
   options.method = 7;
   bm_broadphase* object = (bm_broadphase*)&options;
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_create(&options, &object), "method: no value 7");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_create(&options, &object), "method: invalid value 7");
   EXPECT(object == NULL);
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_create(NULL, NULL), "created: a null pointer");
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_update(NULL, view), "broadphase: a null pointer");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_create(NULL, NULL), "created: must not be null");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_update(NULL, view), "broadphase: must not be null");
   EXPECT(bm_create(NULL, &object) == BM_OK);
   move(5);
   boxes[9].max[2] = NAN;
   EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_update(object, view), "body 9: z is NaN");
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_get_pairs(object, NULL), "pairs: a null pointer");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_get_pairs(object, NULL), "pairs: must not be null");
   bm_boxes none = {NULL, NULL, 3, sizeof(bm_box)};
   EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_update(object, none), "null");
   bm_destroy(object);

@@ -79,15 +79,17 @@ TEST_F(BroadphaseMisuse, OfOptionsThrows) {
   EXPECT_THAT(with([](auto& o) { o.collides[3] = 0; }), HasSubstr("layers 0 and 3"));
   EXPECT_EQ(with([](auto& o) { o.setCollides(3, 0, false); }), "no exception");
   EXPECT_THROW(with([](auto& o) { o.setCollides(3, 32); }), std::out_of_range);
-  EXPECT_EQ(with([](auto& o) { o.method = static_cast<bp::Method>(2); }), "method: no value 2");
-  EXPECT_EQ(with([](auto& o) { o.order = static_cast<bp::Order>(-1); }), "order: no value -1");
+  EXPECT_EQ(with([](auto& o) { o.method = static_cast<bp::Method>(2); }),
+            "method: invalid value 2");
+  EXPECT_EQ(with([](auto& o) { o.order = static_cast<bp::Order>(-1); }), "order: invalid value -1");
   const bp::InstructionSet foreign =
       isaSupported(Isa::sse2) ? bp::InstructionSet::neon : bp::InstructionSet::sse2;
   EXPECT_THAT(with([&](auto& o) { o.instruction_set = foreign; }), HasSubstr("not supported"));
 }
 
 TEST_F(BroadphaseMisuse, OfAnswersThrows) {
-  EXPECT_EQ(messageOf<std::logic_error>([&] { (void)object_.began(); }), "the answer is pairs()");
+  EXPECT_EQ(messageOf<std::logic_error>([&] { (void)object_.began(); }),
+            "the answer is pairs: use pairs()");
   bp::Options options;
   options.answer = bp::Answer::events;
   const bp::BroadPhase events(options);

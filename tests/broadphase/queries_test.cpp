@@ -314,7 +314,7 @@ TEST(BroadphaseQueries, RefuseMisuse) {
   EXPECT_EQ(cast({{}, {0, 0, kInfinity}}), "query 0: direction is not finite");
   EXPECT_EQ(cast({{}, {1, 0, 0}, NAN}), "query 0: max_fraction is negative or NaN");
   EXPECT_EQ(cast({{}, {1, 0, 0}, -1}), "query 0: max_fraction is negative or NaN");
-  EXPECT_EQ(cast({{}, {1, 0, 0}}, static_cast<bp::Hits>(2)), "hits: no value 2");
+  EXPECT_EQ(cast({{}, {1, 0, 0}}, static_cast<bp::Hits>(2)), "hits: invalid value 2");
 
   const auto nearest = [&](const bp::NearestQuery& query) {
     bp::QueryResults<bp::Neighbour> neighbours;

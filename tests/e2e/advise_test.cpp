@@ -27,7 +27,7 @@ TEST_F(Advise, NamesAnAlgorithmForEachAnswerAndACommandThatRunsIt) {
                     "--param", "density=0.2", "--json", "advice.json"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* part : {"Pairs, 1 thread: ", "Events, 1 thread: ", " the fastest, with ",
-                           "Second is ", "the last duel on "}) {
+                           "Second is ", "the last duel ran on "}) {
     EXPECT_THAT(onOneLine(ended.out), HasSubstr(part));
   }
   std::size_t commands = 0;
@@ -59,7 +59,7 @@ TEST_F(Advise, AWrongAlgorithmIsOutOfTheQuestion) {
                                             "sap,faulty-extra", "--answer", "pairs"}));
   EXPECT_EQ(ended.status, 1) << ended.err;
   const std::string text = onOneLine(ended.out);
-  for (const char* part : {"Pairs, 1 thread: sap is the fastest", "There is no second.",
+  for (const char* part : {"Pairs, 1 thread: sap is the fastest", "There is no runner-up.",
                            "DISQUALIFIED: faulty-extra: mismatch: frame"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
@@ -68,7 +68,7 @@ TEST_F(Advise, AWrongAlgorithmIsOutOfTheQuestion) {
   const ProgramResult none = run(adviceOn(
       {"--plugin", places::faultyPlugin(), "--algorithm", "faulty-extra", "--answer", "pairs"}));
   EXPECT_EQ(none.status, 1);
-  EXPECT_THAT(none.out, HasSubstr("no algorithm gave right answers"));
+  EXPECT_THAT(none.out, HasSubstr("no algorithm gave correct answers"));
 }
 
 TEST_F(Advise, ACrashOrAHangCostsOnlyItsAlgorithm) {

@@ -45,11 +45,11 @@ TEST_F(Audit, FaultsOfEachKindAreCountedAndCutOut) {
       audit("frame,a,b\n1,1,0\n1,0,1\n1,0,2\n1,2,7\n2,0,1\n", {"--output", "faults"});
   EXPECT_EQ(ended.status, 1);
   for (const char* words :
-       {"2 are wrong", "missed", "false", "doubled", "impossible", "2-7",
+       {"2 are wrong", "missed", "false", "duplicate", "impossible", "2-7",
         "missed in frame 2: bodies 1 and 2", "frame 1, body 1: (2, 0, 0)", "--plugin pairs:log"}) {
     EXPECT_THAT(ended.out, HasSubstr(words));
   }
-  for (const std::string kind : {"missed", "false", "doubled"}) {
+  for (const std::string kind : {"missed", "false", "duplicate"}) {
     const ProgramResult again =
         run({"audit", "faults/" + kind + ".aabbs", "faults/" + kind + ".csv", "--quiet"});
     EXPECT_EQ(again.status, 1) << kind;
@@ -64,7 +64,7 @@ TEST_F(Audit, CountsAreCompleteBeyondWhatIsListed) {
   for (int i = 0; i < 3000; ++i) log += "1,0,1\n";
   const ProgramResult ended = audit(log);
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.out, testing::ContainsRegex("doubled +3000"));
+  EXPECT_THAT(ended.out, testing::ContainsRegex("duplicate +3000"));
   EXPECT_THAT(ended.out, testing::ContainsRegex("impossible +1 "));
 }
 
@@ -98,7 +98,7 @@ TEST_F(Audit, DamagedLogsAreRefusedWithTheirLine) {
   refuse("frame,a,b,event\n1,0,1,start\n", "begin or end");
   refuse("frame,a,b\n3,0,1\n", "has frames 0 to 2");
   refuse("{\"frame\": 1}\n", "neither \"pairs\"");
-  refuse("{\"frame\": 1, \"pairs\": [[0, 1, 2]]}\n", "no pair [a, b]");
+  refuse("{\"frame\": 1, \"pairs\": [[0, 1, 2]]}\n", "not a pair [a, b]");
   refuse("{\"frame\": 1, \"pairs\": []}\n{\"frame\": 2, \"began\": []}\n",
          "line 2: pairs and events");
 }

@@ -116,9 +116,9 @@ TEST_F(AuthoredScenes, AreNeverWrittenOver) {
   const std::string beside = "out/Recordings_AABBs/" + kName + ".json";
   fs::create_directories(file("out/Recordings_AABBs"));
   writeFile(file(beside), text);
-  expectRefusal({"bake", "--parameters", beside, "--output", "out"}, {"directory"});
+  expectRefusal({"bake", "--parameters", beside, "--output", "out"}, {"another folder"});
   expectRefusal({"--headless", beside, "--algorithm", "sap", "--record", "out", "--quiet"},
-                {"directory"});
+                {"another folder"});
   EXPECT_EQ(readFile(file(beside)), text);
 }
 

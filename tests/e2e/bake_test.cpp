@@ -262,7 +262,7 @@ TEST_F(Bake, ReplaysSayWhatTheyMiss) {
   expectRefusal(call("splitter", "321", input), {"321", "N40 F8"});
   expectRefusal(call("viewer", "41", input), {"FreeFall Cubes N41", "N40 F8"});
   expectRefusal(call("viewer", "40", {"--input", "out dir", "--quiet", "--recorder", "posrot"}),
-                {"N40 F8", "directory"});
+                {"N40 F8", "another folder"});
   expectRefusal(call("viewer", "40", {}), {"--input"});
   expectRefusal(call("viewer", "40", {"--input", "nowhere"}), {"nowhere"});
   expectRefusal(call("spliter", "40", input), {"'splitter'"});

@@ -130,7 +130,7 @@ TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
   EXPECT_THAT(ended.out, HasSubstr(" against "));
   expectRefusal({"compare", "before.json"}, {"needs two results files", "--by"});
   expectRefusal({"compare", "before.json", "before.json", "--json", "before.json"},
-                {"--json", "already the file of a source"});
+                {"--json", "already used for a source"});
   expectRefusal({"compare", "before.json", "--by", "colour"}, {"--by", "colour"});
 }
 

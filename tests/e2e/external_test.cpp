@@ -89,7 +89,7 @@ TEST_F(External, AHangEndsAtTheHardLimit) {
 TEST_F(External, BadDescriptionsAreRefused) {
   const std::pair<std::string, const char*> refused[] = {
       {program("unknown key"), "unknown key 'paramters'"},
-      {program("newer"), "version 2 of the protocol, this program knows up to 1"},
+      {program("newer"), "version 2 of the protocol, this program supports up to 1"},
       {program("margin"), "margin: a number or the name of a parameter"},
       {program("silent"), "exited with status 0"},
       {"exec no-such-program", "exited with status 127"}};

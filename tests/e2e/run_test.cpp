@@ -149,7 +149,8 @@ TEST_F(Run, RefusesQueriesThatItCannotAnswer) {
     return ended.err;
   };
   EXPECT_THAT(error({"--queries", "rays"}), HasSubstr("KIND:N is expected"));
-  EXPECT_THAT(error({"--queries", "rays:9", "--answer", "events"}), HasSubstr("excludes"));
+  EXPECT_THAT(error({"--queries", "rays:9", "--answer", "events"}),
+              HasSubstr("--answer: cannot be combined with --queries"));
   run({"--headless", "freefall", "--objects", "20", "--frames", "2", "--queries", "rays:9",
        "--algorithm", "bf,kd", "--json", "results.json"});
   EXPECT_EQ(cases().at(0).at("status"), "ok");
@@ -266,6 +267,19 @@ TEST_F(Run, CheckModes) {
 TEST_F(Run, MemoryIsMeasured) {
   for (const Json& result : casesOf({"--algorithm", "sap,sap-mt"})) {
     EXPECT_TRUE(result.at("peak_bytes").is_number_unsigned()) << result.at("id");
+    EXPECT_FALSE(result.contains("ageing"));  // of a few frames
+  }
+  const fs::path output = file("ageing.json");
+  ASSERT_EQ(run({"--headless", "fountain", "--objects", "20000", "--frames", "100", "--algorithm",
+                 "kd", "--check", "off", "--json", output.string()})
+                .status,
+            0);
+  const Json ageing = readJson(output).at("cases").at(0).at("ageing");
+  for (const char* const when : {"early", "late"}) {
+    // At least two arrays with a float per body, at most a hundred.
+    EXPECT_GT(ageing.at(when).at("private_bytes").get<double>(), 20000 * 8) << when;
+    EXPECT_LT(ageing.at(when).at("private_bytes").get<double>(), 20000 * 400) << when;
+    EXPECT_GT(ageing.at(when).size(), 2U) << when;
   }
 }
 

@@ -98,7 +98,7 @@ TEST_F(Verify, DescribesAWorldThatChanges) {
   };
   EXPECT_THAT(lines[1], testing::EndsWith("ratio  outside"));
   EXPECT_THAT(words(7),
-              ElementsAre("frames", "fewest", "bodies", "most", "appear", "vanish", "change"));
+              ElementsAre("frames", "min", "bodies", "mean", "max", "appear", "vanish", "change"));
   EXPECT_THAT(words(8), ElementsAre("initial", "3", "3", "3", "–", "–", "–"));
   EXPECT_THAT(words(11), ElementsAre("all", "1", "1.5", "2", "0", "1", "1"));
   EXPECT_THAT(words(13), ElementsAre("layer", "bodies", "with", "2", "with", "5"));

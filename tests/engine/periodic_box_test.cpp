@@ -46,7 +46,8 @@ TEST(PeriodicBox, IsReadFromItsText) {
   for (const char* text :
        {"", "-,-,-", "0:1", "0:1,0:1", "0:1,0:1,0:1,0:1", "1:0,-,-", "1:1,-,-", "0:x,-,-", "0,-,-",
         "0:1:2,-,-", "nan:1,-,-", "0:inf,-,-", "-1e40:0,-,-", " 0:1,-,-", "0:1,-,- "}) {
-    EXPECT_THAT(messageOf([&] { parsePeriodic(text); }), HasSubstr("is no periodic box")) << text;
+    EXPECT_THAT(messageOf([&] { parsePeriodic(text); }), HasSubstr("is not a periodic box"))
+        << text;
   }
 }
 
@@ -173,7 +174,7 @@ TEST(PeriodicFrames, NeedABoxAndNoSweep) {
     return messageOf([&] { adapted(std::make_unique<MadeFrames>(made, true), reading)->at(1); });
   };
   EXPECT_THAT(error({{"periodic", "source"}}), HasSubstr("states no periodic box: give it, as in"));
-  EXPECT_THAT(error({{"periodic", "0:10"}}), HasSubstr("'0:10' is no periodic box"));
+  EXPECT_THAT(error({{"periodic", "0:10"}}), HasSubstr("'0:10' is not a periodic box"));
   EXPECT_THAT(error({{"periodic", "0:10,-,-"}, {"swept", "on"}}), HasSubstr("not both"));
   EXPECT_EQ(error({{"periodic", "0:10,-,-"}}),
             "Made: frame 1, body 0: its box begins 1e+08 periods from the periodic box along x: at "

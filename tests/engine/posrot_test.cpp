@@ -359,7 +359,7 @@ TEST(BadPosrot, WrongLengthsAndCounts) {
   wrong_count[259] = 0x40;  // 2^30 + 2 objects
   EXPECT_THAT(posrotFault(wrong_count), HasSubstr("too short"));
   wrong_count[259] = 0xFF;
-  EXPECT_THAT(posrotFault(wrong_count), HasSubstr("byte 256: negative number of objects"));
+  EXPECT_THAT(posrotFault(wrong_count), HasSubstr("byte 256: negative number of bodies"));
 }
 
 }  // namespace

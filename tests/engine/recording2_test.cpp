@@ -405,7 +405,7 @@ TEST(BadRecording2, TooShortOrTooLong) {
   }
   Bytes longer = whole;
   longer.insert(longer.end(), 32, 0);
-  EXPECT_THAT(faultOf(longer), HasSubstr("does not end as a recording 2"));
+  EXPECT_THAT(faultOf(longer), HasSubstr("does not end as a .broadmark recording"));
 }
 
 TEST(BadRecording2, AnyWrongByteIsNoticed) {

@@ -207,8 +207,8 @@ TEST(RecordingWriter, RefusesScenesThatAreNotRecordable) {
   EXPECT_THAT(refusal({.name = "Frei\xC3\xA4"}), HasSubstr("scene name"));
   EXPECT_THAT(refusal({.name = "a\nb"}), HasSubstr("scene name"));
   EXPECT_THAT(refusal({.object_type = std::string("a\0b", 3)}), HasSubstr("object type"));
-  EXPECT_THAT(refusal({.objects = 1U << 31}), HasSubstr("2147483648 objects"));
-  EXPECT_THAT(refusal({.objects = 0, .frames = 2'000'000}), HasSubstr("frames of no objects"));
+  EXPECT_THAT(refusal({.objects = 1U << 31}), HasSubstr("2147483648 bodies"));
+  EXPECT_THAT(refusal({.objects = 0, .frames = 2'000'000}), HasSubstr("frames without bodies"));
   EXPECT_TRUE(directory.empty());
 
   RecordingWriter longest({.name = std::string(127, 'x')});
@@ -282,7 +282,7 @@ TEST(BadRecording, TooShortOrTooLong) {
   for (const std::size_t size : {304, 336, 431}) {
     EXPECT_THAT(recordingFault(Bytes(whole.begin(), whole.begin() + size)),
                 AllOf(HasSubstr(std::to_string(size) + " bytes is too short"),
-                      HasSubstr("2 objects and 1 frames"), HasSubstr("= 432 bytes")));
+                      HasSubstr("2 bodies and 1 frames"), HasSubstr("= 432 bytes")));
   }
   Bytes longer = whole;
   longer.push_back(0);
@@ -294,13 +294,13 @@ TEST(BadRecording, NegativeAndAbsurdCounts) {
     std::int32_t objects, frames;
     const char* fault;
   };
-  const Counts invalid[] = {{-1, 1, "byte 256: negative number of objects (-1)"},
+  const Counts invalid[] = {{-1, 1, "byte 256: negative number of bodies (-1)"},
                             {INT_MIN, 1, "byte 256: negative"},
                             {2, -1, "byte 260: negative number of frames (-1)"},
                             {INT_MAX, INT_MAX, "too short"},
                             {INT_MAX, 0, "too short"},
                             {2, INT_MAX, "too short"},
-                            {0, INT_MAX, "byte 260: 2147483647 frames of no objects"},
+                            {0, INT_MAX, "byte 260: 2147483647 frames without bodies"},
                             {2, 0, "too long"},
                             {1, 1, "too long"}};
   for (const Counts& counts : invalid) {

@@ -345,7 +345,7 @@ TEST_F(Replays, NothingIsWrittenOverTheInput) {
   const fs::path path = posrotOf(bakeSmall("cubes"));
   const std::string sidecar = bytesOf(fs::path(path).replace_extension(".json"));
   auto viewer = replay("viewer", {{"objects", "64"}});
-  EXPECT_THAT(inputErrorOf([&] { bake(*viewer, {path}); }), HasSubstr("another directory"));
+  EXPECT_THAT(inputErrorOf([&] { bake(*viewer, {path}); }), HasSubstr("another folder"));
   EXPECT_EQ(bytesOf(fs::path(path).replace_extension(".json")), sidecar);
 }
 

@@ -26,7 +26,7 @@ def measure(page):
     )
     page.wait("window.results || /failed/.test(document.getElementById('progress').textContent)")
     assert page.driver.execute_script("return document.getElementById('progress').textContent") == (
-        "Done: 36 of 36 cases are right."
+        "Done: 36 of 36 cases are correct."
     )
     return page.driver.execute_script("return window.results")
 

@@ -60,7 +60,8 @@ std::optional<FileDescriptor> Autosave::lock(std::size_t slot) const {
 void Autosave::recover(const Left& left, Document& document) {
   std::optional<FileDescriptor> locked = lock(left.slot);
   if (!locked) {
-    throw InputError(fmt::format("{}: another process edits it", file(left.slot, "json").string()));
+    throw InputError(
+        fmt::format("{}: another process is editing it", file(left.slot, "json").string()));
   }
   const fs::path path = file(left.slot, "json");
   scenes::AuthoredScene scene = scenes::parseAuthoredScene(readTextFile(path), path.string());

@@ -330,7 +330,7 @@ class AuthorPanel final : public Panel {
     ImGui::PushID("steps");
     ui.number("move by", document_.tools.move_step, 1e-6, 1e6,
               "Step of the gizmo when it snaps, in world units");
-    ui.number("turn by", document_.tools.turn_step, 0.1, 180,
+    ui.number("rotate by", document_.tools.turn_step, 0.1, 180,
               "Rotation step of the gizmo and of the keys, in degrees");
     ui.number("scale by", document_.tools.scale_step, 0.01, 10,
               "Scale step of the gizmo and of the keys, as a factor");

@@ -102,7 +102,7 @@ class BakeForm : BatchForm {
     if (ui.integer("threads", threads, 1, 256, "Number of recordings to bake in parallel")) {
       options_.threads = static_cast<int>(threads);
     }
-    drawFolder("output", "Directory for recordings", directory_, stale_);
+    drawFolder("output", "Folder for recordings", directory_, stale_);
   }
 
   /// Reads the inputs and makes the preview.
@@ -112,7 +112,7 @@ class BakeForm : BatchForm {
     try {
       if (options_.sources.empty()) throw InputError("no scene is chosen");
       if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
-      if (directory_.empty()) throw InputError("an output directory is needed");
+      if (directory_.empty()) throw InputError("an output folder is needed");
       options_.scene.objects = parseCounts(counts_, "number of bodies", kMaxBodies);
       if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
       options_.scene.parameters = {{"frames", std::to_string(frames_)},

@@ -17,8 +17,8 @@ class BatchForm : protected PanelContext {
 
   /// Draws an input for a folder with a "Browse…" button. Both references outlive the dialog.
   void drawFolder(const char* label, const char* title, std::string& folder, bool& changed) {
-    changed |= ui.text(label, folder, "directory");
-    if (!wideButton("Browse…", "Choose the directory")) return;
+    changed |= ui.text(label, folder, "folder");
+    if (!wideButton("Browse…", "Choose the folder")) return;
     files.ask({.title = title,
                .purpose = FileDialog::Purpose::directory,
                .suggestion = folder,

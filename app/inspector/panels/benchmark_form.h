@@ -99,7 +99,7 @@ class BenchmarkForm : BatchForm {
     ui.heading("Run settings");
     ui.text("algorithms", algorithms_, "sap*, kd, all");
     ui.tooltip("Ids, families, patterns or all, as for --algorithm");
-    if (wideButton("Those in Algorithms", "Use the algorithms of the panel Algorithms")) {
+    if (wideButton("From Algorithms", "Use the algorithms of the panel Algorithms")) {
       algorithms_.clear();
       for (const TrackEdit& track : session.tracks.list) {
         algorithms_ += (algorithms_.empty() ? "" : ", ") + track.test_case.algorithm.id;

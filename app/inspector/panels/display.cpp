@@ -60,9 +60,9 @@ class DisplayPanel final : public Panel {
     }
     drawLayers();
     ui.number("smallest", filter.smallest, 0, kLargestSize,
-              "Hide bodies with a shorter longest edge, in world units");
+              "Hide bodies with a longest edge below this, in world units");
     ui.number("largest", filter.largest, 0, kLargestSize,
-              "Hide bodies with a longer longest edge, in world units; 0: no limit");
+              "Hide bodies with a longest edge above this, in world units; 0: no limit");
     std::size_t axis = static_cast<std::size_t>(filter.clip_axis) + 1;
     if (ui.combo("clip", axis, {"nothing", "along x", "along y", "along z"},
                  "Hide bodies with their centre beyond a plane")) {

@@ -89,7 +89,7 @@ class MismatchesPanel final : public Panel {
     const Snapshot& snapshot = *progress->snapshot;
     const FrameDifference& difference = snapshot.difference;
     if (!difference.isMismatch()) {
-      ui.coloured(ui.theme.good, fmt::format("right in frame {}", snapshot.frame));
+      ui.coloured(ui.theme.good, fmt::format("correct in frame {}", snapshot.frame));
       return;
     }
     ui.coloured(ui.theme.bad,

@@ -24,7 +24,7 @@ namespace broadmark {
 enum class Tool { none, move, turn, scale, brush };
 inline constexpr NameTable kTools{{NamedValue{Tool::none, "none"},
                                    {Tool::move, "move"},
-                                   {Tool::turn, "turn"},
+                                   {Tool::turn, "rotate"},
                                    {Tool::scale, "scale"},
                                    {Tool::brush, "brush"}}};
 

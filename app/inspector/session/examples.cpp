@@ -73,7 +73,7 @@ std::span<const Example> examples() {
       {"Shooter", "characters and projectiles", "shooter", 4000, 1000, {"tide"}, "Phases"},
       {"City", "buildings and traffic", "city", 8000, 800, {"columns"}, "Results"},
       {.name = "Find the bug",
-       .doc = "it stops at a missed pair",
+       .doc = "stops at a missed pair",
        .scene = nullptr,
        .objects = 0,
        .preview_objects = 0,

@@ -155,7 +155,7 @@ void FileDialog::draw(Ui& ui) {
   }
   ImGui::SetNextItemWidth(-1);
   ImGui::PushID("directory");
-  const bool typed = ui.text("##directory", path_text_, "directory");
+  const bool typed = ui.text("##directory", path_text_, "folder");
   const bool in_directory = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
   ImGui::PopID();
   if (typed) enter(path_text_);

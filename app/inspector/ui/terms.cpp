@@ -15,7 +15,7 @@ constexpr std::pair<std::string_view, const char*> kTerms[] = {
     {"ISA", "Instruction set of its SIMD code"},
     {"threads", "Threads that it uses"},
     // Phases.
-    {"total", "Time of a frame: the sum of the first four phases"},
+    {"total", "Time of a frame: the sum of its four phases"},
     {"update_objects", "Phase: copies the new boxes"},
     {"clean_cache", "Phase: drops the previous answer"},
     {"update_structures", "Phase: brings the structure up to date"},
@@ -33,15 +33,15 @@ constexpr std::pair<std::string_view, const char*> kTerms[] = {
     {"5 %", "5 % of the frames take less"},
     {"95 %", "95 % of the frames take less"},
     {"99 %", "99 % of the frames take less"},
-    {"rank", "Place; algorithms of one place do not differ"},
+    {"rank", "Algorithms with the same rank do not differ significantly"},
     {"ratio", "Time relative to the first algorithm, median of the rounds"},
-    {"95 % interval", "The ratio is within it with a probability of 95 %"},
+    {"95 % interval", "95 % confidence interval of the ratio"},
     // Two files.
     {"case", "Recording and algorithm; a click opens it"},
     {"A", "Time of a frame in the baseline"},
     {"B", "Time of a frame in the opened file"},
-    {"B/A", "Above 1: slower than the baseline; without what all cases have in common"},
-    {"verdict", "What the interval of the ratio tells, as broadmark compare does"},
+    {"B/A", "Above 1: slower than the baseline; corrected for the drift of all cases"},
+    {"verdict", "Judged by the interval of the ratio, as in broadmark compare"},
     // Answers.
     {"pairs", "Reported pairs"},
     {"missed", "Pairs that overlap and are not reported"},

@@ -18,9 +18,9 @@ constexpr float kNearness = 0.75F;        // of the camera, which shows the whol
 constexpr float kTurn = 0.006F;           // of the camera, in radians per frame
 
 constexpr const char* kDrop =
-    "A recording is played, a scene opens in the panel Author, the cases of results are listed, "
-    "meshes, particles, arrays and CSV files are imported, a plug-in (.so) adds its algorithms. "
-    "Ctrl+O opens a file, too; Ctrl+P finds every command.";
+    "A recording is played; a scene opens in the panel Author; the cases of results are listed; "
+    "meshes, particles, arrays and CSV files are imported; a plug-in (.so) adds its algorithms. "
+    "Ctrl+O also opens a file; Ctrl+P finds every command.";
 
 }  // namespace
 

@@ -188,14 +188,14 @@ void drawLegend(const Ui& ui, const ViewContent& content, const std::string& own
 float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   constexpr std::pair<Tool, const char*> kButtons[] = {
       {Tool::move, "Move the selected bodies by their handles (M)"},
-      {Tool::turn, "Turn the selected bodies about their common centre (T)"},
+      {Tool::turn, "Rotate the selected bodies about their common centre (T)"},
       {Tool::scale, "Scale the selected bodies about their common centre (R)"},
       {Tool::brush, "Paint bodies by clicks and drags (B)"}};
   Tools& tools = session.document.tools;
   const bool brush = tools.tool == Tool::brush;
   const char* hint = "Click or drag to paint; Escape to stop";
   const ImGuiStyle& style = ImGui::GetStyle();
-  const float button = 54 * ui.scale;
+  const float button = std::max(54 * ui.scale, Ui::buttonWidth("Rotate"));
   const float pad = 6 * ui.scale;
   const float gap = style.ItemSpacing.x;
   const float line = ImGui::GetFrameHeightWithSpacing();

@@ -54,7 +54,7 @@ async function run(program) {
     const results = named(await measured(program, words.trim().split(/\s+/)));
     byId("report").srcdoc = withCases(report, results);
     byId("report").hidden = false;
-    say(`Done: ${results.cases.filter(({ status }) => status === "ok").length} of ${results.cases.length} cases are right.`);
+    say(`Done: ${results.cases.filter(({ status }) => status === "ok").length} of ${results.cases.length} cases are correct.`);
     byId("save").hidden = false;
     byId("save").onclick = () => {
       const link = document.createElement("a");
@@ -65,7 +65,7 @@ async function run(program) {
     };
     window.results = results;  // for tests
   } catch (error) {
-    say(`It failed: ${error.message}.`);
+    say(`Measuring failed: ${error.message}.`);
   }
   byId("run").disabled = false;
 }

@@ -214,7 +214,7 @@ class PerWorldBroadPhase final : public BroadPhase {
     std::uint32_t index = 0;  ///< the instance's last frame; frames without changes do not count
     std::vector<Aabb> boxes;
     std::vector<std::uint32_t> changed;         ///< indices into `bodies`, ascending
-    std::vector<std::uint32_t> filter_changed;  ///< likewise
+    std::vector<std::uint32_t> filter_changed;  ///< indices into `bodies`, ascending
     std::vector<Pair> pairs;                    ///< by body id
     std::vector<Pair> began;
     std::vector<Pair> ended;

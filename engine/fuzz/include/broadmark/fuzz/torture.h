@@ -34,7 +34,7 @@ inline constexpr NameTable kFaultKinds{{NamedValue{FaultKind::wrong_answer, "wro
                                         {FaultKind::failure, "failure"},
                                         {FaultKind::hang, "hang"},
                                         {FaultKind::leak, "leak"},
-                                        {FaultKind::nondeterministic, "unsteady"}}};
+                                        {FaultKind::nondeterministic, "nondeterministic"}}};
 
 struct Fault {
   FaultKind kind = FaultKind::wrong_answer;

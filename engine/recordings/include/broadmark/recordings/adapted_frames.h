@@ -63,7 +63,7 @@ std::unique_ptr<IndexedFrames> adapted(std::unique_ptr<IndexedFrames> frames,
 /// The scene of the adapted frames of this scene: "FreeFall swept", "FreeFall swept widened".
 /// Throws InputError for an invalid value.
 SceneInfo adaptedScene(SceneInfo scene, const ParameterValues& reading);
-/// The name of the scene whose adapted name this is.
+/// The name of the original scene, from that of an adapted one.
 std::string unadaptedName(std::string name, const ParameterValues& reading);
 
 /// The hash of a recording's adapted boxes; `hash` is the recording's own.

@@ -28,7 +28,7 @@ struct Selection {
   std::vector<std::uint32_t> frames;  ///< ascending; the first becomes the initial pose
   std::vector<Filling> filled = {};   ///< with the recording's ids
   bool all_present = true;            ///< SceneInfo::all_present of the part
-  CollisionFilter filter = {};        ///< of these bodies, in this order
+  CollisionFilter filter = {};        ///< the filter of `bodies`, in their order
   /// Bodies with the recording's ids, ascending, that have its layers and tags in each frame
   /// instead of the filter's.
   std::vector<std::uint32_t> filter_changes = {};
