@@ -44,6 +44,9 @@ std::string_view broadmark::${header}::${name}() {
   file(CONFIGURE OUTPUT ${base}.cpp @ONLY CONTENT "#include \"${header}.h\"\n${definitions}")
   set_source_files_properties(${base}.cpp PROPERTIES OBJECT_DEPENDS "${paths}"
     SKIP_UNITY_BUILD_INCLUSION ON)  # a unity file drops OBJECT_DEPENDS
+  if(EMSCRIPTEN)  # whose clang warns of #embed
+    set_source_files_properties(${base}.cpp PROPERTIES COMPILE_OPTIONS -Wno-c23-extensions)
+  endif()
   target_sources(${target} PRIVATE ${base}.cpp)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
