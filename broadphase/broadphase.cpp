@@ -84,7 +84,7 @@ void checkChoice(Enum value, Enum last, const char* name) {
   checkChoice(options.answer, Answer::events, "answer");
   checkChoice(options.order, Order::any, "order");
   checkChoice(options.changes, Changes::trusted, "changes");
-  checkChoice(options.instruction_set, InstructionSet::avx512, "instruction_set");
+  checkChoice(options.instruction_set, InstructionSet::simd128, "instruction_set");
   if (options.threads < 1 || options.threads > kMaxThreads) {
     throw std::invalid_argument("threads: must be 1 to " + std::to_string(kMaxThreads));
   }
@@ -189,8 +189,12 @@ class BroadPhase::Implementation {
 
   void update(const Boxes& boxes, std::optional<std::span<const Body>> listed);
   void setFilter(Body body, const Filter& filter);
+  void requireWhole() const {
+    if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
+  }
   std::span<const Pair> answer(Answer kind, const PairRun& run) const {
     if (in_use_.load(std::memory_order_acquire)) Use::throwInUse();
+    requireWhole();
     if (options_.answer != kind) {
       throw std::logic_error(kind == Answer::pairs ? "the answer is events: use began() and ended()"
                                                    : "the answer is pairs: use pairs()");
@@ -341,7 +345,7 @@ void BroadPhase::Implementation::checkChanged(const BoxReader& boxes, std::size_
 void BroadPhase::Implementation::update(const Boxes& boxes,
                                         std::optional<std::span<const Body>> listed) {
   const Use use(in_use_);
-  if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
+  requireWhole();
   if (boxes.count > kMaxBodies) {
     throw std::invalid_argument(numbered("", boxes.count).substr(1) + " bodies: at most " +
                                 std::to_string(kMaxBodies) + " are supported");
@@ -546,6 +550,7 @@ void BroadPhase::Implementation::takeAnswer() {
 
 void BroadPhase::Implementation::setFilter(Body body, const Filter& filter) {
   const Use use(in_use_);
+  requireWhole();
   if (body >= kMaxBodies) {
     throw std::invalid_argument(numbered("body", body) +
                                 numbered(": the last one is", kMaxBodies - 1));
@@ -567,7 +572,7 @@ template <class Query, class T, class Answer>
 void BroadPhase::Implementation::query(std::span<const Query> queries, QueryResults<T>& results,
                                        Answer answer) {
   const Use use(in_use_);
-  if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
+  requireWhole();
   checkQueries(queries);
   if (boxes_.empty() || execution_ == nullptr) {  // no body is present
     results.items.clear();
@@ -590,7 +595,7 @@ std::size_t BroadPhase::Implementation::filterCount() const {
 
 void BroadPhase::Implementation::save(std::vector<std::byte>& state) const {
   const Use use(in_use_);
-  if (failed_) throw std::logic_error("an update has failed: only restore() is allowed");
+  requireWhole();
   if (filters_changed_ && has_answer_) {
     throw std::logic_error("save: filters have been set since the last update: update first");
   }

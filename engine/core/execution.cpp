@@ -184,6 +184,7 @@ void ThreadTeam::wake(int workers) {
 void ThreadTeam::start(int workers, Job job) {
   if (workers == 1) return job.call(job.context, 0);
   job_ = job;
+  failed_ = false;  // a job may have thrown before parallel_for_ did
   if (parallel_for_) {
     parallel_for_(workers, [this](int worker) { runJob(worker); });
   } else {

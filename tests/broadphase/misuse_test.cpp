@@ -85,6 +85,8 @@ TEST_F(BroadphaseMisuse, OfOptionsThrows) {
   const bp::InstructionSet foreign =
       isaSupported(Isa::sse2) ? bp::InstructionSet::neon : bp::InstructionSet::sse2;
   EXPECT_THAT(with([&](auto& o) { o.instruction_set = foreign; }), HasSubstr("not supported"));
+  EXPECT_THAT(with([](auto& o) { o.instruction_set = bp::InstructionSet::simd128; }),
+              HasSubstr("not supported"));
 }
 
 TEST_F(BroadphaseMisuse, OfAnswersThrows) {
@@ -174,6 +176,8 @@ class BroadphaseJobs : public testing::Test {
     EXPECT_THAT(messageOf<std::logic_error>([&] { object.update(boxes_); }),
                 HasSubstr("only restore()"));
     EXPECT_THROW(object.save(state), std::logic_error);
+    EXPECT_THROW((void)object.pairs(), std::logic_error);
+    EXPECT_THROW(object.setFilter(0, {}), std::logic_error);
     object.restore(state);
     EXPECT_EQ(listOf(object.pairs()), right);
     object.update(moved);
@@ -204,6 +208,17 @@ TEST_F(BroadphaseJobs, AreEachRunOnce) {
 TEST_F(BroadphaseJobs, MayThrow) {
   expectFailure<std::runtime_error>(
       [](int, const auto&) { throw std::runtime_error("no more jobs"); }, "no more jobs");
+}
+
+TEST_F(BroadphaseJobs, MayThrowAfterAJobHas) {
+  bool fails = true;
+  ThreadTeam team(2, [&](int jobs, const std::function<void(int)>& job) {
+    runBackwards(jobs, job);
+    if (fails) throw std::runtime_error("no more jobs");
+  });
+  EXPECT_THROW(team.run([](int) { throw std::bad_alloc(); }), std::runtime_error);
+  fails = false;
+  EXPECT_NO_THROW(team.run([](int) {}));
 }
 
 TEST_F(BroadphaseJobs, MustNotUseTheObject) {

@@ -20,7 +20,7 @@ TEST_F(Merge, TwoShardsGiveTheWholeRun) {
   const ProgramResult ended =
       run({"merge", "a.jsonl", "b.json", "--json", "whole.json", "--csv", "w.csv"});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("3 cases of 2 files"));
+  EXPECT_THAT(ended.err, HasSubstr("3 cases from 2 files"));
   const Json whole = readJson(file("whole.json"));
   EXPECT_EQ(whole.at("cases").size(), 3U);
   EXPECT_EQ(whole.at("environments").size(), 1U);
