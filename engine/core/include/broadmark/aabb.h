@@ -19,7 +19,8 @@
 namespace broadmark {
 
 /// An axis-aligned box in world units, laid out as in an .aabbs recording: 32 bytes, the fourth
-/// component of each corner is padding (0).
+/// component of each corner is padding (0). All bounds are finite and in order on every axis,
+/// unless it is kEmptyBox.
 struct alignas(16) Aabb {
   std::array<float, 4> min{};
   std::array<float, 4> max{};
@@ -49,14 +50,16 @@ inline constexpr Aabb kEmptyBox = [] {
   return Aabb{{kInfinity, kInfinity, kInfinity, 0}, {-kInfinity, -kInfinity, -kInfinity, 0}};
 }();
 
+/// Whether the body is absent. Tests the first axis alone: an absent body's box is kEmptyBox.
 constexpr bool isEmpty(const Aabb& box) { return box.min[0] > box.max[0]; }
 
-/// In double: the sum of two huge coordinates may overflow a float.
+/// The middle of the box along an axis, 0 to 2; NaN for an absent body. In double: the sum of two
+/// huge coordinates may overflow a float.
 constexpr double centreOf(const Aabb& box, std::size_t axis) {
   return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
 }
 
-/// In double, for the same reason; 0 for an absent body.
+/// The longest extent along an axis. In double, for the same reason; 0 for an absent body.
 constexpr double longestEdge(const Aabb& box) {
   double longest = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -65,7 +68,7 @@ constexpr double longestEdge(const Aabb& box) {
   return longest;
 }
 
-/// Whether the centre of a box lies in another.
+/// Whether the centre of `box` lies in `outer`, faces included; false for an absent body.
 constexpr bool holdsCentre(const Aabb& outer, const Aabb& box) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double centre = centreOf(box, axis);
@@ -74,6 +77,7 @@ constexpr bool holdsCentre(const Aabb& outer, const Aabb& box) {
   return true;
 }
 
+/// Whether `inner` lies within `outer`, faces included. Every box contains kEmptyBox.
 constexpr bool contains(const Aabb& outer, const Aabb& inner) {
   for (int axis = 0; axis < 3; ++axis) {
     if (inner.min[axis] < outer.min[axis] || inner.max[axis] > outer.max[axis]) return false;
@@ -81,7 +85,7 @@ constexpr bool contains(const Aabb& outer, const Aabb& inner) {
   return true;
 }
 
-/// The box grown by `margin` on every side.
+/// The box grown by `margin` on every side; bounds are rounded to the nearest float, not outward.
 constexpr Aabb enlarged(Aabb box, float margin) {
   for (int axis = 0; axis < 3; ++axis) {
     box.min[axis] -= margin;
@@ -90,6 +94,7 @@ constexpr Aabb enlarged(Aabb box, float margin) {
   return box;
 }
 
+/// The smallest box that contains both; merging with kEmptyBox changes nothing.
 constexpr Aabb merged(const Aabb& a, const Aabb& b) {
   Aabb box;
   for (int axis = 0; axis < 3; ++axis) {

@@ -29,13 +29,14 @@
 
 namespace broadmark {
 
-/// Receives a counter: its name ("swaps", "moves", "skipped subtrees") and value.
+/// Receives a counter: its name ("swaps", "moves", "skipped subtrees"), borrowed for the call, and
+/// its value.
 using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
 
 /// Time spent in a frame on the exchange with a compute device or an external program.
 struct TransferTimes {
-  std::int64_t upload_ns = 0;
-  std::int64_t download_ns = 0;
+  std::int64_t upload_ns = 0;    ///< part of the phases' times
+  std::int64_t download_ns = 0;  ///< part of the phases' times
   // Of phases 1 and 4: does not count (traits.self_timed).
   std::int64_t update_overhead_ns = 0;
   std::int64_t search_overhead_ns = 0;
@@ -60,12 +61,13 @@ class BroadPhase : public Parametrised {
   /// each is enlarged by this much on every side (world units). Depends on the parameters alone.
   [[nodiscard]] virtual float margin() const { return 0; }
 
-  /// Builds all structures for the initial pose. `execution` outlives the instance. Throws
-  /// UnsupportedError if the algorithm cannot run here.
+  /// Builds all structures for the initial pose. `scene` and `first` are valid only during the
+  /// call, `execution` outlives the instance. Throws UnsupportedError if the algorithm cannot run
+  /// here.
   virtual void initialize(const SceneInfo& scene, const Frame& first,
                           ExecutionContext& execution) = 0;
 
-  /// Phase 1: copies the new boxes. The frame is valid only during the call.
+  /// Phase 1: copies the new boxes, or those that changed. The frame is valid only during the call.
   virtual void updateObjects(const Frame& frame) = 0;
   /// Phase 2: drops the last frame's answer.
   virtual void cleanCache() {}
@@ -79,7 +81,8 @@ class BroadPhase : public Parametrised {
   [[nodiscard]] virtual PairRuns overlaps() const = 0;
 
   /// Called before initialize() by an adapter: asks that the answer be mapped as it is found.
-  /// Returns whether it will be; if not, it is mapped after the search.
+  /// Returns whether it will be; if not, it is mapped after the search. The map outlives the
+  /// instance.
   virtual bool mapPairs(const PairMap&) { return false; }
 
   /// Called before initialize(), only if traits.events: the answer will be events().
@@ -93,13 +96,13 @@ class BroadPhase : public Parametrised {
   /// searchOverlaps().
   virtual void answerQueries(AnswerKind) {}
   /// Phase 4: finds the bodies that each query hits. overlaps() then holds each hit once: a, the
-  /// query's index; b, the body.
+  /// query's index; b, the body. The batch is valid only during the call.
   virtual void searchQueries(const QueryBatch&) {}
 
   /// Times within the phases of the last frame (algorithms on a compute device, programs).
   [[nodiscard]] virtual TransferTimes transfers() const { return {}; }
 
-  /// Draws the current acceleration structure.
+  /// Draws the current acceleration structure. Called between frames; not timed.
   virtual void drawStructure(DebugDraw&) const {}
   /// Visits the work counters of the last frame (incremental algorithms).
   virtual void visitCounters(const CounterVisitor&) const {}
@@ -114,8 +117,9 @@ class BroadPhase : public Parametrised {
 // for pair buffers that are emptied every frame, and derive from BroadPhase.
 
 /// Layer 1: holds the execution context and one pair buffer per worker. Implements phases 2 and 4:
-/// findPairs() adds pairs to the empty buffers, which become the answer. An override
-/// of initialize() must first call this one; otherwise the first search throws std::logic_error.
+/// findPairs() adds pairs to the empty buffers, which become the answer. An override of
+/// initialize() must first call this one; otherwise the first search for pairs throws
+/// std::logic_error.
 class PairBroadPhase : public BroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
@@ -134,9 +138,11 @@ class PairBroadPhase : public BroadPhase {
   /// Adds every hit of a query, as searchQueries(), to the buffer of any worker.
   virtual void findHits(const QueryBatch&) {}
 
+  // From initialize() on.
   ExecutionContext& execution() { return *execution_; }
   ThreadTeam& team() { return execution_->team(); }
-  /// The pair buffer of one worker.
+  /// The pair buffer of one worker, below execution().threads(). No other worker may use it at the
+  /// same time.
   PairBuffer& pairs(int worker = 0) { return buffers_[static_cast<std::size_t>(worker)]; }
 
  private:
@@ -148,26 +154,29 @@ class PairBroadPhase : public BroadPhase {
   std::vector<PairRun> runs_;
 };
 
-/// Layer 2: also holds a copy of the boxes.
+/// Layer 2: also holds a copy of the boxes. Phase 1 costs O(changed bodies) if few boxes have
+/// changed, otherwise O(n).
 class BoxBroadPhase : public PairBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void updateObjects(const Frame& frame) override;
 
  protected:
+  /// The boxes of the latest frame, by body.
   [[nodiscard]] const std::vector<Aabb>& boxes() const { return boxes_; }
 
  private:
   std::vector<Aabb> boxes_;
 };
 
-/// Layer 2 for SIMD: the copy is stored as six arrays (structure of arrays).
+/// Layer 2 for SIMD: the copy is stored as six arrays (structure of arrays). Phase 1 costs O(n).
 class SimdBroadPhase : public PairBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void updateObjects(const Frame& frame) override;
 
  protected:
+  /// The boxes of the latest frame, by body.
   [[nodiscard]] const BoxArrays& arrays() const { return arrays_; }
 
  private:

@@ -1,4 +1,13 @@
 // Finds the bodies with boxes or collision filters that differ from the frame before.
+//
+// Example:
+//
+//   const std::vector<Aabb> before = {{{0, 0, 0}, {1, 1, 1}}, {{4, 0, 0}, {5, 1, 1}}};
+//   std::vector<Aabb> after = before;
+//   after[1] = kEmptyBox;
+//   ChangeDetector detector;
+//   detector.complete({0, before});
+//   const Frame frame = detector.complete({1, after});  // *frame.changed: 1
 #pragma once
 
 #include <cstdint>
@@ -9,11 +18,15 @@
 namespace broadmark {
 
 /// Fills in Frame::changed and Frame::filter_changed for sources that do not provide them. Retains
-/// a copy of the boxes. A steady state allocates nothing.
+/// a copy of the boxes, which it compares bitwise. A steady state allocates nothing.
+///
+/// Requires all frames of a run, in order, from frame 0 on, which begins a new run; their number of
+/// bodies must be the same.
 class ChangeDetector {
  public:
-  /// Returns the frame with the bodies changed since the last call; none in frame
-  /// 0. Valid until the next call.
+  /// Returns the frame with the bodies changed since the last call; none in frame 0. Lists that the
+  /// frame has are kept, new ones are valid until the next call. O(n). Does not find the changes of
+  /// a LiveFilter, which the copy retained here follows.
   Frame complete(Frame frame) {
     if (frame.filter != nullptr) completeFilter(frame);
     if (frame.changed) return frame;

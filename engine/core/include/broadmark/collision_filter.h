@@ -25,15 +25,20 @@ namespace broadmark {
 /// The symmetric matrix of colliding layers: bit b of row a.
 class LayerMatrix {
  public:
-  static constexpr std::size_t kLayers = 32;
+  static constexpr std::size_t kLayers = 32;  ///< layers are numbered from 0
 
+  /// No layers collide.
   constexpr LayerMatrix() = default;
+  /// All layers collide, with themselves, too.
   static LayerMatrix all();
 
+  /// Sets whether two layers, both below kLayers, collide, or one with itself. Returns the matrix.
   LayerMatrix& set(std::size_t a, std::size_t b, bool collide = true);
+  /// Whether two layers, both below kLayers, collide.
   [[nodiscard]] bool collide(std::size_t a, std::size_t b) const {
     return (rows_[a] >> b & 1) != 0;
   }
+  /// Bit b of row a is set if layers a and b collide.
   [[nodiscard]] const std::array<std::uint32_t, kLayers>& rows() const { return rows_; }
 
   friend bool operator==(const LayerMatrix&, const LayerMatrix&) = default;
@@ -44,6 +49,7 @@ class LayerMatrix {
 
 /// A body's layer, world and tags. The world does not change during a run.
 struct BodyGroups {
+  /// An unused tag, which is shared with no body.
   static constexpr std::uint32_t kNoTag = std::numeric_limits<std::uint32_t>::max();
   using Tags = std::array<std::uint32_t, 3>;
   static constexpr Tags kNoTags = {kNoTag, kNoTag, kNoTag};
@@ -55,47 +61,58 @@ struct BodyGroups {
   friend bool operator==(const BodyGroups&, const BodyGroups&) = default;
 };
 
-/// The predicate wanted(a, b) over all bodies of a scene. By default all pairs are wanted. Cheap to
-/// copy: copies share their data, which are immutable except for a LiveFilter's.
+/// The predicate wanted(a, b) over all bodies of a scene, by id. By default all pairs are wanted,
+/// of any number of bodies. Cheap to copy: copies share their data, which are immutable except for
+/// a LiveFilter's. Ids are not checked.
 class CollisionFilter {
  public:
+  /// All pairs are wanted.
   CollisionFilter() = default;
-  /// `bodies`: the groups of each body. `changes`: layers may change, so all of the matrix counts.
-  /// Throws std::invalid_argument for a nonexistent layer.
+  /// `bodies`: the groups of each body, by id. `changes`: layers may change, so all of the matrix
+  /// counts, also if all bodies are in layer 0 now. Throws std::invalid_argument for a nonexistent
+  /// layer. O(bodies).
   CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix,
                   bool changes = false);
 
-  /// Whether an overlap of these two bodies counts; symmetric, a != b.
+  /// Whether an overlap of these two bodies counts; symmetric, a != b. O(1).
   [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
     return data_ == nullptr || data_->wanted(a, b);
   }
   /// Keeps the wanted pairs and the invalid ones (a >= b, or without such a body), in order, at the
   /// front, and returns their number. Half the time of wanted() for each pair.
   std::size_t retainWanted(std::span<Pair> pairs) const;
-  /// Sufficient condition for all pairs to be wanted.
+  /// Sufficient condition for all pairs to be wanted, at any time: false for every LiveFilter.
+  /// O(1).
   [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
 
+  /// The layer of a body of the scene.
   [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
     return data_ == nullptr || data_->layers.empty() ? 0 : data_->layers[body];
   }
-  /// The groups of a body; default values beyond the last body.
+  /// The groups of a body of the scene.
   [[nodiscard]] BodyGroups groupsOf(std::uint32_t body) const;
+  /// The layers that collide; by default only layer 0 with itself, as all bodies are in it.
   [[nodiscard]] LayerMatrix matrix() const;
-  /// One entry per body; empty if all bodies have the default value.
+  /// One entry per body; empty if all bodies have the default value. Valid as long as the filter or
+  /// a copy of it.
   [[nodiscard]] std::span<const std::uint8_t> layers() const;
   [[nodiscard]] std::span<const std::uint32_t> worlds() const;
   [[nodiscard]] std::span<const BodyGroups::Tags> tags() const;
 
-  /// The filter of a subset of the bodies, in this order.
+  /// The filter of a subset of the bodies, which are renumbered in this order; a body may occur
+  /// several times. O(bodies).
   [[nodiscard]] CollisionFilter of(std::span<const std::uint32_t> bodies) const;
   /// This filter of `count` bodies, with new layers and tags for some of them: `groups`, in the
-  /// order of `changed`. Worlds and matrix remain. O(count).
+  /// order of `changed`. Worlds and matrix remain. `count` is the number of bodies of this filter.
+  /// Throws std::invalid_argument for a nonexistent layer. O(count).
   [[nodiscard]] CollisionFilter with(std::span<const std::uint32_t> changed,
                                      std::span<const BodyGroups> groups, std::size_t count) const;
   /// The same, with the layers and tags that these bodies have in `source`.
   [[nodiscard]] CollisionFilter with(std::span<const std::uint32_t> changed,
                                      const CollisionFilter& source, std::size_t count) const;
 
+  /// Whether groups and matrix are equal; false if only one of the two wantsAll(). O(bodies),
+  /// unless both share their data.
   friend bool operator==(const CollisionFilter& a, const CollisionFilter& b);
 
  private:
@@ -138,14 +155,16 @@ class CollisionFilter {
   std::shared_ptr<const Data> data_;  ///< null: every pair is wanted
 };
 
-/// A filter with layers and tags that change: all copies of filter() follow.
+/// A filter with layers and tags that change: all copies of filter() follow, and may outlive it.
+/// Not synchronised: no other thread may use a copy during update().
 class LiveFilter {
  public:
+  /// Of `bodies` bodies, with their groups in `first`, and its matrix. O(bodies).
   LiveFilter(const CollisionFilter& first, std::size_t bodies);
 
-  /// Never CollisionFilter::wantsAll().
+  /// A copy that follows. Never CollisionFilter::wantsAll().
   [[nodiscard]] CollisionFilter filter() const;
-  /// Gives a body the layer and the tags that it has in `source`.
+  /// Gives a body the layer and the tags that it has in `source`. O(1); allocates nothing.
   void update(std::uint32_t body, const CollisionFilter& source);
 
  private:

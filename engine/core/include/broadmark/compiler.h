@@ -1,4 +1,4 @@
-// The compiler of the including file, as text.
+// The compiler of the including file, as text: "gcc 13.2.0", "clang 19.1.7".
 #pragma once
 
 #if defined(__clang__)

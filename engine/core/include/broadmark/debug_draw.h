@@ -31,12 +31,14 @@ class DebugDraw {
  public:
   virtual ~DebugDraw() = default;
 
-  /// A cell or node. `level` is its depth (0 = root or only level), for filtering by depth.
+  /// A cell or node, in world units. `level` is its depth (0 = root or only level), for filtering
+  /// by depth.
   virtual void box(const Aabb&, StructureRole, int level) = 0;
+  /// A line between two points, in world units.
   virtual void line(const std::array<float, 3>& from, const std::array<float, 3>& to,
                     StructureRole) = 0;
-  /// A cell with `population` > 0 bodies. Views of the cells' occupancy colour it by a
-  /// scale instead.
+  /// A cell with `population` > 0 bodies. Views of the cells' occupancy colour it by a scale
+  /// instead. By default drawn as a box.
   virtual void cell(const Aabb& bounds, int level, std::uint32_t /*population*/) {
     box(bounds, StructureRole::cell, level);
   }

@@ -1,5 +1,13 @@
 // The kinds of failure: invalid input, an unsupported case, or a lost host process; and
 // cancellation of long work by the user.
+//
+// Example:
+//
+//   try {
+//     throw InputError("crates.json: gravity: 'down' is not a number");
+//   } catch (...) {
+//     const std::string message = currentErrorText();
+//   }
 #pragma once
 
 #include <stdexcept>
@@ -38,10 +46,12 @@ class HardLimitError : public std::runtime_error {
 /// Thrown when the user cancels long work. Not a std::exception, since it is no error.
 struct Cancelled {};
 
-/// An error with the reason why a system call has just failed: "no pipe: Too many open files".
+/// An error with the reason why a system call has just failed, according to errno: `what`, a colon
+/// and the reason, as in "no pipe: Too many open files". Returns it: the caller throws it.
 std::runtime_error systemError(const char* what);
 
-/// The message of the exception being handled. Only inside a catch block.
+/// The message of the exception being handled; fixed texts for std::bad_alloc and for an exception
+/// that is no std::exception. Only inside a catch block.
 std::string currentErrorText();
 
 }  // namespace broadmark

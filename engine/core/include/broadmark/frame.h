@@ -33,11 +33,11 @@ inline constexpr std::size_t kMaxNameLength = 127;
 /// Properties of a scene before its first frame: a recording's header. A body's id is a slot below
 /// `objects`; in each frame it is present or absent.
 struct SceneInfo {
-  std::string name;         ///< "FreeFall"; printable ASCII, at most kMaxNameLength characters
-  std::string object_type;  ///< "Cubes"; with the same limits
-  std::uint32_t objects = 0;
+  std::string name;             ///< "FreeFall"; printable ASCII, at most kMaxNameLength characters
+  std::string object_type;      ///< "Cubes"; with the same limits
+  std::uint32_t objects = 0;    ///< the number of boxes in every frame, of absent bodies, too
   std::uint32_t frames = 0;     ///< without the initial pose
-  Aabb world = {};              ///< bodies may protrude a little
+  Aabb world = {};              ///< in world units; bodies may protrude a little
   bool all_present = true;      ///< no body is ever absent
   CollisionFilter filter = {};  ///< of the initial pose, and of all frames unless filter_changes
   /// Layers and tags of bodies may change from frame to frame; their worlds and the matrix do not.
@@ -59,28 +59,32 @@ struct Frame {
   /// starts if necessary.
   std::optional<std::span<const std::uint32_t>> changed = {};
   /// The collision filter of this frame, only if SceneInfo::filter_changes; else null: the scene's.
+  /// Borrowed, as the boxes.
   const CollisionFilter* filter = nullptr;
   /// The bodies with other layers or tags than in frame `index` - 1, ascending, whether present or
   /// not. Empty if the source does not report them. Algorithms always get them, as `changed`.
   std::span<const std::uint32_t> filter_changed = {};
 
-  /// The collision filter of this frame, which is one of this scene.
+  /// The collision filter of this frame, which is one of this scene: borrowed from either.
   [[nodiscard]] const CollisionFilter& filterIn(const SceneInfo& scene) const {
     return filter == nullptr ? scene.filter : *filter;
   }
-  /// The ids of the bodies that are present, ascending.
+  /// The ids of the bodies that are present, ascending. O(n); allocates.
   [[nodiscard]] std::vector<std::uint32_t> presentBodies() const;
 };
 
 /// A sequential source of frames: a recording, or a live simulation. The runner of a case does not
-/// distinguish them.
+/// distinguish them. One thread at a time may use a source.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
+  /// The scene of all frames. Of a simulation, it may change at rewind(), when parameters take
+  /// effect.
   [[nodiscard]] virtual const SceneInfo& scene() const = 0;
 
-  /// Starts over and returns the initial pose (index 0).
+  /// Starts over and returns the initial pose (index 0). Throws InputError, as next() does, for
+  /// what cannot be read, such as a damaged recording.
   virtual Frame rewind() = 0;
 
   /// The next frame, wholly in resident memory; nullopt after the last one.
@@ -97,11 +101,11 @@ class IndexedFrames : public FrameSource {
   Frame rewind() final { return at(0); }
   std::optional<Frame> next() final;
 
-  /// The name in messages.
+  /// The name in messages: a recording's path, else the scene's name.
   [[nodiscard]] virtual const std::string& name() const { return scene().name; }
 
  protected:
-  /// The boxes of frame `index`, which must exist.
+  /// The boxes of frame `index`, which must exist. Valid until the next call.
   virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
   /// The changes of the last frame read, as Frame::changed.
   [[nodiscard]] virtual std::optional<std::span<const std::uint32_t>> changed() const { return {}; }
@@ -115,8 +119,10 @@ class IndexedFrames : public FrameSource {
 };
 
 /// All frames of a source, held in memory: 32 · objects · (1 + frames) bytes, and each filter.
+/// Frames have no lists of changes; their boxes are valid as long as the list.
 class FrameList final : public IndexedFrames {
  public:
+  /// Reads all frames, from rewind() on. Throws what the source throws, and std::bad_alloc.
   explicit FrameList(FrameSource& source);
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }

@@ -1,5 +1,12 @@
 // Arrays of millions of entries, in huge pages where the system grants them: scattered accesses
 // then cause far fewer TLB misses.
+//
+// Example:
+//
+//   LargeArray<float> values;
+//   values.resize(1'000'000);  // uninitialised
+//   for (float& value : values) value = 1;
+//   LargeVector<float> zeros(1'000'000);  // a std::vector
 #pragma once
 
 #include <cstddef>
@@ -16,12 +23,15 @@
 
 namespace broadmark {
 
+/// A deleter for std::unique_ptr of memory from allocateLarge().
 struct FreeMemory {
   void operator()(void* memory) const { std::free(memory); }
 };
 
-/// Allocates `bytes` uninitialised bytes; from the size of a huge page on in huge pages, if
-/// possible. Throws std::bad_alloc.
+/// Allocates `bytes` uninitialised bytes, to be released by std::free(). From 2 MiB on, the size of
+/// a huge page, they are in huge pages, if possible, and aligned to one; otherwise aligned to
+/// `alignment`, a power of two. The size is rounded up to a multiple of the alignment. Throws
+/// std::bad_alloc.
 inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   constexpr std::size_t kHugePage = std::size_t{1} << 21;
   if (bytes >= kHugePage) alignment = kHugePage;
@@ -38,7 +48,7 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   return memory;
 }
 
-/// An allocator for standard containers, with huge pages for large ones.
+/// An allocator for standard containers, with huge pages for large ones. Aligns to 64 bytes.
 template <class T>
 struct LargeAllocator {
   using value_type = T;
@@ -49,16 +59,19 @@ struct LargeAllocator {
   void deallocate(T* memory, std::size_t) { std::free(memory); }
   bool operator==(const LargeAllocator&) const = default;
 };
+/// A std::vector in huge pages; unlike a LargeArray, it initialises its entries.
 template <class T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
 
-/// A growing array of uninitialised entries. Retains its memory when it shrinks.
+/// A growing array of uninitialised entries, aligned to 64 bytes. Retains its memory when it
+/// shrinks. Movable, not copyable; one moved from may only be destroyed or assigned to.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// New entries are uninitialised; existing entries are kept.
+  /// New entries are uninitialised; existing entries are kept. Amortised O(1) per new entry; growth
+  /// beyond the capacity invalidates pointers. Throws std::bad_alloc, which changes nothing.
   void resize(std::size_t size) {
     if (size > capacity_) {
       // Grow geometrically, so that repeated small growth rarely reallocates.

@@ -1,4 +1,13 @@
 // Sets of layers that never collide with each other, such as those of static geometry.
+//
+// Example:
+//
+//   std::vector<BodyGroups> groups(1000);  // of static geometry
+//   groups[0].layer = 1;                   // a player
+//   const CollisionFilter filter(groups, LayerMatrix().set(0, 1));
+//   const std::vector<std::uint32_t> present = {0, 1, 2};
+//   const NonCollidingLayers layers(filter, present);
+//   const bool is_static = layers.contains(filter.layerOf(2));  // layer 0: 2 of these bodies
 #pragma once
 
 #include <algorithm>
@@ -12,11 +21,14 @@
 
 namespace broadmark {
 
-/// A set of layers that collide neither with themselves nor with each other.
+/// A set of layers that collide neither with themselves nor with each other: pairs of their bodies
+/// are never wanted, so no algorithm need look for them. By default empty. Copyable; does not refer
+/// to the filter.
 class NonCollidingLayers {
  public:
   NonCollidingLayers() = default;
-  /// Greedy: adds layers in descending order of population. Counts only `bodies`.
+  /// Greedy: adds layers in descending order of population. Counts only `bodies`, by id; without
+  /// any of them a layer is not added. O(bodies).
   NonCollidingLayers(const CollisionFilter& filter, std::span<const std::uint32_t> bodies) {
     const LayerMatrix matrix = filter.matrix();
     std::array<std::size_t, LayerMatrix::kLayers> population{};
@@ -35,9 +47,11 @@ class NonCollidingLayers {
     }
   }
 
+  /// How many of `bodies` are in these layers.
   [[nodiscard]] std::size_t bodyCount() const { return body_count_; }
+  /// Whether the layer, below LayerMatrix::kLayers, is one of the set.
   [[nodiscard]] bool contains(std::size_t layer) const { return members_[layer]; }
-  /// Whether any of the layers collides with this one.
+  /// Whether any layer of the set collides with this one, which is then not in the set.
   [[nodiscard]] bool collideWith(std::size_t layer) const { return collides_[layer]; }
 
  private:

@@ -30,15 +30,17 @@ struct Pair {
   friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
-/// Branchless: a comparison would compile to a branch, mispredicted half of the time.
+/// The pair of two different bodies, given in any order. Branchless: a comparison would compile to
+/// a branch, mispredicted half of the time.
 constexpr Pair orderedPair(std::uint32_t i, std::uint32_t j) {
   const std::uint32_t smaller = j ^ ((i ^ j) & (0U - std::uint32_t{i < j}));
   return {smaller, i ^ j ^ smaller};
 }
 
-/// A contiguous run of pairs, borrowed.
+/// A contiguous run of pairs, borrowed from its owner.
 using PairRun = std::span<const Pair>;
-/// A whole answer: one run or several (per-worker runs need no merging), borrowed.
+/// A whole answer: one run or several (per-worker runs need no merging). Both the runs and the
+/// array of runs are borrowed.
 using PairRuns = std::span<const PairRun>;
 
 /// The changes to the pairs since the frame before, borrowed: new pairs (began) and removed pairs
@@ -54,11 +56,13 @@ constexpr std::uint64_t pairCount(PairRuns runs) {
   for (const PairRun chunk : runs) count += chunk.size();
   return count;
 }
+/// Number of events of both kinds.
 constexpr std::uint64_t eventCount(const PairEvents& events) {
   return pairCount(events.began) + pairCount(events.ended);
 }
 
-/// The number of pairs of each of `bodies` bodies. Bodies that do not exist are ignored.
+/// The number of pairs of each of `bodies` bodies, by body. Ignores pairs of bodies that do not
+/// exist. O(bodies + pairs).
 inline std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pairs) {
   std::vector<std::uint32_t> counts(bodies, 0);
   for (const PairRun chunk : pairs) {
@@ -90,26 +94,28 @@ class alignas(64) PairBuffer {
  public:
   static constexpr std::size_t kBlock = 1024;  ///< pairs mapped at a time
 
+  /// Drops all pairs; retains the memory.
   void clear() {
     size_ = 0;
     mapped_ = 0;
     end_ = map_ == nullptr ? pairs_.size() : 0;
   }
-  /// Maps all pairs added from now on; null: none. Borrowed. The buffer must be empty.
+  /// Maps all pairs added from now on; null: none. Borrowed. Drops the pairs in the buffer.
   void setMap(const PairMap* map) {
     map_ = map;
     clear();
   }
-  /// Maps those pairs that are not mapped yet. size() and run() are final only then.
+  /// Maps those pairs that are not mapped yet. With a map, size() and run() are final only then.
   void flush() {
     if (map_ == nullptr) return;
     size_ = mapped_ + map_->map({pairs_.data() + mapped_, size_ - mapped_});
     mapped_ = size_;
   }
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Valid until the buffer changes.
   [[nodiscard]] PairRun run() const { return {pairs_.data(), size_}; }
 
-  /// Adds the pair of i and j, given in any order.
+  /// Adds the pair of two different bodies, given in any order. Amortised O(1).
   void add(std::uint32_t i, std::uint32_t j) {
     *room(1) = orderedPair(i, j);
     ++size_;
@@ -121,15 +127,17 @@ class alignas(64) PairBuffer {
     ++size_;
   }
 
-  /// Space for `count` more pairs behind the present ones; valid until the next call. Written pairs
-  /// count only after advance().
+  /// Uninitialised space for `count` more pairs behind the present ones; valid until the next call.
+  /// Written pairs count only after advance(). May map earlier pairs, or reallocate: throws
+  /// std::bad_alloc.
   Pair* room(std::size_t count) {
     if (size_ + count > end_) makeRoom(count);
     return pairs_.data() + size_;
   }
+  /// Adds the first `count` pairs of the space that room() returned.
   void advance(std::size_t count) { size_ += count; }
 
-  /// Drops the pairs for which keep(pair) is false; preserves the order.
+  /// Drops the pairs for which keep(pair) is false; preserves the order. Only without a map.
   template <class Keep>
   void retain(Keep keep) {
     std::size_t count = 0;

@@ -1,4 +1,14 @@
 // A set of pairs in one contiguous array, with O(1) insertion and removal.
+//
+// Example:
+//
+//   const std::vector<Pair> began = {{0, 1}, {1, 2}};
+//   PairSet touching;
+//   touching.insert(began);
+//   touching.erase(PairRun(began).first(1));
+//   for (const Pair pair : touching.run()) {
+//     const bool found = touching.contains(pair);  // (1, 2)
+//   }
 #pragma once
 
 #include <cstddef>
@@ -10,28 +20,34 @@
 
 namespace broadmark {
 
-/// A hash table with linear probing (load factor up to 1/2) maps pairs to positions in the array.
-/// Retains its memory when cleared.
+/// A hash table with linear probing (load factor up to 1/2) maps pairs to positions in the array:
+/// 24 to 48 bytes a pair. Retains its memory when cleared. One moved from may only be destroyed or
+/// assigned to.
 class PairSet {
  public:
+  /// All pairs, in no particular order; valid until the set changes.
   [[nodiscard]] PairRun run() const { return pairs_; }
 
+  /// O(1) on average.
   [[nodiscard]] bool contains(Pair pair) const {
     return table_[findSlot(pair, hashOf(pair))].position != kEmpty;
   }
 
+  /// O(size of the table): it does not shrink.
   void clear() {
     pairs_.clear();
     table_.assign(table_.size(), Slot{});
   }
 
-  /// Throws std::logic_error if a pair is already in the set.
+  /// Amortised O(1) per pair. Throws std::logic_error if a pair is already in the set, after
+  /// inserting those before it, and std::length_error for more than 2^31 pairs in all.
   void insert(PairRun pairs) {
     while (2 * (pairs_.size() + pairs.size()) > table_.size()) grow();
     forEachPrefetched(pairs, [this](Pair pair) { insert(pair); });
   }
 
-  /// Moves the last pairs into the gaps. Throws std::logic_error if a pair is not in the set.
+  /// Moves the last pairs into the gaps. O(1) on average per pair. Throws std::logic_error if a
+  /// pair is not in the set, after erasing those before it.
   void erase(PairRun pairs) {
     forEachPrefetched(pairs, [this](Pair pair) { erase(pair); });
   }

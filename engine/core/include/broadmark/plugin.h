@@ -18,6 +18,7 @@
 #include "broadmark/compiler.h"
 #include "broadmark/headers_hash.h"
 
+// How this build's standard library lays out its types, if not as usual.
 #if defined(_GLIBCXX_DEBUG)
 #define BROADMARK_LIBRARY_LAYOUT ", checked containers"
 #elif defined(_GLIBCXX_USE_CXX11_ABI) && !_GLIBCXX_USE_CXX11_ABI
@@ -68,15 +69,16 @@ namespace broadmark {
 constexpr char kPluginInterface[] =
     BROADMARK_VERSION_TEXT ", headers " BROADMARK_HEADERS_HASH BROADMARK_LIBRARY_LAYOUT;
 
-/// The export of a library: entries of one type.
+/// The export of a library: entries of one type. The program never unloads the library.
 template <class Entry>
 struct Plugin {
   /// kPluginInterface of its build. Read before compatibility is checked; must stay the first
   /// member.
   const char* interface;
+  /// Called by the program only if the interfaces are equal.
   std::vector<Entry> (*entries)();
   const char* build = nullptr;  ///< how it was built, in words; null: unknown
-  bool optimised = true;
+  bool optimised = true;        ///< false: the program warns
 };
 
 /// The symbol of an exported Plugin<Algorithm>.
@@ -85,7 +87,8 @@ inline constexpr char kAlgorithmPluginSymbol[] = "broadmark_plugin";
 }  // namespace broadmark
 
 // NOLINTBEGIN(bugprone-macro-parentheses): a name and a type
-/// Exports a Plugin<Entry> under a symbol; entries() returns a std::vector of entries.
+/// Exports a Plugin<Entry> under a symbol; entries() returns a std::vector of entries. At namespace
+/// scope, once per library and symbol.
 #define BROADMARK_EXPORT_PLUGIN(symbol, Entry, entries)                              \
   extern "C" {                                                                       \
   [[gnu::visibility("default")]] extern const ::broadmark::Plugin<Entry> symbol;     \
@@ -96,5 +99,6 @@ inline constexpr char kAlgorithmPluginSymbol[] = "broadmark_plugin";
 // NOLINTEND(bugprone-macro-parentheses)
 
 /// Exports the algorithms that a function `std::vector<broadmark::Algorithm> variants()` returns.
+/// At namespace scope, once per library.
 #define BROADMARK_PLUGIN(variants) \
   BROADMARK_EXPORT_PLUGIN(broadmark_plugin, ::broadmark::Algorithm, variants)

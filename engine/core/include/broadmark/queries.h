@@ -25,25 +25,27 @@ namespace broadmark {
 inline constexpr std::size_t kNearestBodies = 8;
 
 /// A box that moves by `motion`; a ray is a point that moves, a point a box without extent. Boxes
-/// and points of AnswerKind::boxes and nearest do not move.
+/// and points of AnswerKind::boxes and nearest do not move. In world units; finite.
 struct Query {
-  Aabb box;
-  std::array<float, 4> motion{};
+  Aabb box;                       ///< at the start
+  std::array<float, 4> motion{};  ///< the whole way; the fourth component is padding
 };
 
 /// The queries of a frame, borrowed.
 struct QueryBatch {
-  AnswerKind kind;
+  AnswerKind kind;  ///< one of kQueryKinds
   std::span<const Query> queries;
 };
 
-/// Whether a body is hit by a query that is not for the nearest bodies. In double: rays and moving
-/// boxes are subject to rounding.
+/// Whether a body is hit by a query that is not for the nearest bodies: touching counts, an absent
+/// body is never hit. In double: rays and moving boxes are subject to rounding; boxes at rest are
+/// exact.
 bool hits(AnswerKind kind, const Query& query, const Aabb& body);
-/// The distance of a body from a box or point at rest, in double.
+/// The distance of a present body from a box or point at rest, in world units; 0 if they overlap.
+/// In double.
 double distanceTo(const Query& query, const Aabb& body);
 
-/// The largest absolute value of the coordinates of present bodies.
+/// The largest absolute value of the coordinates of present bodies; 0 without any.
 float largestCoordinate(std::span<const Aabb> boxes);
 
 /// Queries around the bodies of a frame: half start at the centre of a random body, half anywhere
@@ -53,19 +55,22 @@ float largestCoordinate(std::span<const Aabb> boxes);
 /// bodies.
 std::vector<Query> makeQueries(Answer answer, std::span<const Aabb> boxes, std::uint32_t frame);
 
-/// Hits as pairs: a, the query; b, the body.
+/// Hits as pairs: a, the query; b, the body. An answer is right if it has all certain hits and none
+/// but possible ones, at least `min_count`.
 ///
-/// Algorithms compute rays, sweeps and distances with rounding errors. A hit is certain if it also
-/// is one at a distance of 64 units in the last place of the largest coordinate; it is possible if
-/// it is one within that distance.
+/// Algorithms compute rays, sweeps and distances with rounding errors. A hit is certain if the
+/// query also hits the body's box once shrunk on every side by 64 units in the last place of the
+/// largest coordinate, and possible if it hits the box once grown by as much. Hits of boxes at rest
+/// are certain or impossible. Of the nearest bodies, those are certain that are nearer than the
+/// last one by more than that, and possible that are farther by no more.
 struct HitBounds {
-  std::vector<Pair> certain;  ///< ascending
-  std::vector<Pair> possible;
+  std::vector<Pair> certain;   ///< ascending
+  std::vector<Pair> possible;  ///< ascending; includes the certain hits
   /// Hits that a complete answer has at least: the nearest bodies include some at equal distance.
   std::uint64_t min_count = 0;
 };
 
-/// By brute force.
+/// The hits of all queries of one kind, by brute force: O(queries · bodies).
 HitBounds findHits(const QueryBatch& batch, std::span<const Aabb> boxes);
 
 }  // namespace broadmark

@@ -1,5 +1,16 @@
 // Storage for an engine's bodies, with stable addresses and reuse of memory. Adding and removing
 // take constant time.
+//
+// Example:
+//
+//   struct Body {
+//     explicit Body(double kilograms) : mass(kilograms) {}
+//     double mass;
+//   };
+//   scenes::BodyPool<Body> pool;
+//   Body& body = pool.add(2.0);  // stays at its address
+//   const bool all_heavy = pool.all([](const Body& other) { return other.mass > 1; });
+//   pool.remove(body);
 #pragma once
 
 #include <cstddef>
@@ -10,9 +21,13 @@
 
 namespace broadmark::scenes {
 
+/// Owns the bodies, and destroys them with itself. `Body` is a class that can be derived from. The
+/// memory of removed bodies is reused, but not freed. Not thread-safe.
 template <class Body>
 class BodyPool {
  public:
+  /// Constructs a body in the slot that was freed last, or in a new one. The reference is valid
+  /// until the body is removed. Amortised O(1).
   template <class... Arguments>
   Body& add(Arguments&&... arguments) {
     if (free_.empty()) {
@@ -24,14 +39,15 @@ class BodyPool {
     return slots_[slot].emplace(slot, std::forward<Arguments>(arguments)...);
   }
 
-  /// The body must be in this pool.
+  /// Destroys a body, which must be in this pool. Amortised O(1).
   void remove(Body& body) {
     const std::size_t slot = static_cast<Slotted&>(body).slot;
     slots_[slot].reset();
     free_.push_back(slot);
   }
 
-  /// Calls visit(body) for each body, in slot order.
+  /// Calls visit(body) for each body, in slot order; visit() must not add bodies, but may remove
+  /// the one it is called with. O(largest number of bodies so far).
   template <class Visit>
   void each(const Visit& visit) {
     for (auto& slot : slots_) {
@@ -39,7 +55,8 @@ class BodyPool {
     }
   }
 
-  /// Whether holds(body) for all bodies.
+  /// Whether holds(body) for all bodies; true if there are none. As each(), until the first
+  /// failure.
   template <class Holds>
   [[nodiscard]] bool all(const Holds& holds) const {
     for (const auto& slot : slots_) {

@@ -39,6 +39,7 @@ struct SceneListing {
   std::string name;     ///< as in recordings: "FreeFall"
   std::string summary;  ///< one sentence
 };
+/// In the order of lists and help.
 std::vector<SceneListing> builtinScenes();
 
 /// How an engine moves the bodies of a scene.
@@ -51,8 +52,8 @@ enum class Dynamics {
 
 /// A physics engine, for lists and help.
 struct EngineListing {
-  std::string id;  ///< "bullet"
-  std::string summary;
+  std::string id;       ///< "bullet"
+  std::string summary;  ///< one sentence
   Dynamics dynamics = Dynamics::rigid;
   std::string plugin;  ///< the library, as named on the command line; "": built in
 };
@@ -61,9 +62,9 @@ std::vector<EngineListing> availableEngines();
 
 /// A writable recording format, for lists and help.
 struct RecorderListing {
-  std::string id;  ///< "aabbs": also the extension of its recordings
-  std::string summary;
-  std::string folder;  ///< the original's folder name for such recordings
+  std::string id;       ///< "aabbs": also the extension of its recordings, which has a dot
+  std::string summary;  ///< one sentence
+  std::string folder;   ///< the original's folder name for such recordings
 };
 std::vector<RecorderListing> builtinRecorders();
 
@@ -73,13 +74,18 @@ std::unique_ptr<Parametrised> engineParameters(const std::string& id);
 
 /// A body that left its world for good, and stays where it was seen first outside.
 struct Escape {
-  std::uint32_t body = 0;
-  std::uint32_t frame = 0;
+  std::uint32_t body = 0;   ///< its id
+  std::uint32_t frame = 0;  ///< the first frame that it was outside in
 };
 
 /// A live physics simulation, frame by frame. Its parameters (objects, frames, seed, density,
 /// object_type, engine, …, the scene's own, and those of the chosen engine) take effect at the next
 /// rewind(), which restarts the simulation. Same parameters, same frames, bit for bit.
+///
+/// Until the first frame, scene() describes the current parameters, computed by each call (a replay
+/// opens its recording); then those of the last rewind(). next() rewinds first, if needed. poses()
+/// and unrotatedBoxes() require a frame. A failure of a plug-in's engine is an InputError, as is
+/// one of a replayed recording.
 class Simulation : public Parametrised, public FrameSource, public PoseSource {
  public:
   explicit Simulation(SceneListing listing) : listing_(std::move(listing)) {}
@@ -89,16 +95,18 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
   /// The input file besides the parameters: a recording to replay, an authored scene; "": none.
   /// Throws InputError if there is no such recording.
   [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
-  /// The hash of the input besides the parameters; "": none. Throws InputError.
+  /// The hash of the input besides the parameters; "": none. May read a whole recording. Throws
+  /// InputError.
   [[nodiscard]] virtual std::string inputHash() { return {}; }
-  /// The bodies that escaped up to the latest frame, in order.
+  /// The bodies that escaped up to the latest frame, in order. Valid until the next frame.
   [[nodiscard]] virtual std::span<const Escape> escapes() const { return {}; }
 
  private:
   SceneListing listing_;
 };
 
-/// A line for each escape: "body 17 left its world for good in frame 4"; of many, the first ones.
+/// A line for each escape: "body 17 left its world for good in frame 4"; of more than 20, the first
+/// ones, and a line with the number of the others.
 std::vector<std::string> escapeTexts(const Simulation&);
 
 /// Creates the simulation of a built-in scene with default parameters. `scene` is its id or its
@@ -128,29 +136,33 @@ std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::str
 std::string formatSceneParameters(Simulation&);
 
 /// Whether `path` is a complete recording baked with exactly these parameters and from an input
-/// with the current inputHash(), according to its sidecar, and has the sidecar's hash. Throws
-/// Cancelled, as does isIntact().
+/// with the current inputHash(), according to its sidecar, and has the sidecar's hash. Reads the
+/// whole recording if its parameters match. Throws Cancelled, as does isIntact(), and InputError
+/// for a sidecar that cannot be read.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation,
              const std::function<bool()>& cancelled = {});
 /// Whether `path` is an intact baked recording, of any origin: it has the hash in its
-/// sidecar.
+/// sidecar. Reads the whole recording.
 bool isIntact(const std::filesystem::path& path, const std::function<bool()>& cancelled = {});
 
 /// The hash in a recording's sidecar; nullopt without a sidecar, or if the file there has
-/// another schema. Throws InputError if a sidecar contains no hash.
+/// another schema. Throws InputError if a sidecar contains no hash or cannot be read. Does not read
+/// the recording.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
-/// A recording's sidecar without the hash, as JSON; "" without a sidecar. Throws InputError.
+/// A recording's sidecar without the hash, as JSON; "" without a sidecar. Throws InputError if it
+/// cannot be read.
 std::string bakedParameters(const std::filesystem::path& recording);
 
 /// Throws InputError if a recording at one of these paths cannot hold the scene, or if bake() would
 /// overwrite input(), its sidecar, or another recording's sidecar.
 void requireBakeable(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
 
-/// Simulates all frames once into recordings at `paths`, each in the format of its extension.
-/// Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with all parameters
-/// and the recording's hash. Returns false, and leaves no file, if `progress` stopped it. Throws
-/// InputError.
+/// Simulates all frames once into recordings at `paths`, each in the format of its extension (that
+/// of a recorder). Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with
+/// all parameters and the recording's hash. Replaces existing files: also a .json that is no
+/// sidecar. Returns false, and leaves no file, if `progress` stopped it. Throws InputError, as
+/// requireBakeable(), and for a path or frame that cannot be written.
 bool bake(Simulation& simulation, const std::vector<std::filesystem::path>& paths,
           const FrameProgress& progress = {});
 

@@ -1,4 +1,11 @@
 // The results of a case: its times and its status.
+//
+// Example:
+//
+//   const auto microsecondsPerFrame = [](const CaseResult& result, Phase phase) {
+//     if (result.status != Status::ok) return 0.0;  // result.reason states the cause
+//     return 1e6 * result.meanSeconds(phase).value_or(0);
+//   };
 #pragma once
 
 #include <cstdint>
@@ -21,8 +28,9 @@ namespace broadmark {
 
 /// One pass of a fresh instance over the whole recording.
 struct Repetition {
-  std::int64_t initialize_ns = 0;
-  std::vector<FrameTimes> frames;  ///< empty unless CaseResult::timed()
+  std::int64_t initialize_ns = 0;  ///< as CaseExecutor::start(); 0 unless CaseResult::timed()
+  /// From frame 1 on, in order: fewer than the recording's after a timeout. Empty unless timed().
+  std::vector<FrameTimes> frames;
   ProcessorCounts processor = {};  ///< sums over the four phases of all frames
 };
 
@@ -36,21 +44,22 @@ inline constexpr NameTable kFrameCounts{{NamedValue{FrameCount::pairs, "pairs"},
                                          {FrameCount::allowed_extra, "allowed_extra"},
                                          {FrameCount::invalid, "invalid"}}};
 
+/// The counts of one frame, by FrameCount.
 using FrameCounts = ValueOfEach<FrameCount, std::uint64_t, kFrameCounts.entries.size()>;
 
 /// The recording a case ran on.
 struct RecordingReference {
-  SceneInfo scene;
+  SceneInfo scene;                    ///< after the reading options
   std::optional<std::uint64_t> seed;  ///< nullopt for a foreign recording
-  std::string hash;
-  std::string path;                  ///< "" if simulated for this run
-  ParameterValues scene_parameters;  ///< all of them, if simulated
-  ParameterValues swept = {};        ///< values that differ between the recordings of a run
+  std::string hash;                   ///< of the recording's adapted boxes, as adaptedHash()
+  std::string path;                   ///< "" if simulated for this run
+  ParameterValues scene_parameters;   ///< all of them, if simulated
+  ParameterValues swept = {};         ///< values that differ between the recordings of a run
   /// Non-default reading options: as swept boxes; for an import also the mesh elements, …
   ParameterValues reading = {};
 };
 
-/// The number of bodies present in the frames that were run.
+/// The number of bodies present in the frames that were run, without the initial pose.
 struct Population {
   double mean = 0;
   std::uint64_t max = 0;
@@ -64,24 +73,27 @@ struct Ageing {
 };
 
 struct CaseResult {
-  std::string id;
+  // One case on one recording. Status, differences and counts of wrong pairs include warm-up
+  // passes.
+
+  std::string id;  ///< as caseId()
   RecordingReference recording;
-  std::string algorithm;
-  std::string family;
+  std::string algorithm;  ///< its id: "kd-mt"
+  std::string family;     ///< as Algorithm::family
   Isa isa = Isa::scalar;
-  bool vectorised = false;  ///< whether `isa` applies
-  int threads = 1;
+  bool vectorised = false;     ///< whether `isa` applies
+  int threads = 1;             ///< the calling thread included
   std::string device;          ///< as requested, see ExecutionContext::device()
   std::string plugin;          ///< the algorithm's plug-in file; "": built in
   ParameterValues parameters;  ///< all, defaults included
-  Answer answer = {};
+  Answer answer = {};          ///< as Case::answer
   Conditions conditions;
   std::size_t environment = 0;  ///< index in Results::environments
 
-  Status status = Status::ok;
-  std::string reason;  ///< for every status but ok
+  Status status = Status::ok;  ///< as CaseRun::status()
+  std::string reason;          ///< for every status but ok
 
-  // As FrameCount::pairs.
+  // As FrameCount::pairs, in the first repetition.
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
   std::optional<Population> bodies;  ///< nullopt if no body is ever absent
@@ -102,17 +114,18 @@ struct CaseResult {
   /// Counters of the first initialisation.
   std::map<std::string, std::uint64_t> setup;
 
-  std::vector<Repetition> repetitions;
+  std::vector<Repetition> repetitions;  ///< measured ones, in the order of their execution
 
-  /// The total times in seconds, per repetition.
+  /// Statistics of Phase::total in seconds, over all repetitions; zeros without frames. O(n log n)
+  /// for n frames in total.
   [[nodiscard]] Summary summary() const;
-  /// The mean of a phase per frame, over all repetitions; nullopt without frames.
+  /// The mean of a phase per frame in seconds, over all repetitions; nullopt without frames.
   [[nodiscard]] std::optional<double> meanSeconds(Phase phase) const;
   /// Whether times were measured, rather than instructions counted.
   [[nodiscard]] bool timed() const { return !conditions.counted_by; }
   /// The mean per frame, over the repetitions with this counter; nullopt if there are none.
   [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
-  /// The number of frames with a mismatch in some repetition.
+  /// The number of frames with a mismatch in some pass.
   [[nodiscard]] std::size_t mismatchedFrames() const;
   /// Whether all requested repetitions ran, or the status ended the case. An interrupted run leaves
   /// incomplete cases.

@@ -1,4 +1,16 @@
 // Frame-by-frame execution of a case: enforces limits and judges answers.
+//
+// Example:
+//
+//   const auto passes = [](const Algorithm& algorithm, FrameSource& frames) {
+//     CaseRun run({.algorithm = algorithm}, RunPolicy::unlimited(CheckMode::full));
+//     Oracle oracle;
+//     run.start(frames.scene(), frames.rewind());
+//     for (auto frame = frames.next(); frame && run.running(); frame = frames.next()) {
+//       if (run.step(*frame)) run.check(*frame, oracle);
+//     }
+//     return run.status() == Status::ok;  // else run.reason() states the cause
+//   };
 #pragma once
 
 #include <cstdint>
@@ -25,17 +37,20 @@ enum class CheckMode { full, hash, off };
 inline constexpr NameTable kCheckModes{
     {NamedValue{CheckMode::full, "full"}, {CheckMode::hash, "hash"}, {CheckMode::off, "off"}}};
 
-/// The limits of a run, and the check of its answers.
+/// The limits of a run, and the check of its answers. Limits are compared after a call: they do not
+/// interrupt it.
 struct RunPolicy {
   CheckMode check = CheckMode::full;
   /// Limit on the running mean of a frame's total, judged from the third frame on.
   double frame_limit_seconds = 0.5;
   double initialize_limit_seconds = 60;
-  std::uint32_t max_frames = std::numeric_limits<std::uint32_t>::max();  ///< of a pass
-  /// If set, instructions are counted instead of times, of cases where that is possible.
+  /// A pass ends after this many frames beyond the initial pose, still ok; at least one runs.
+  std::uint32_t max_frames = std::numeric_limits<std::uint32_t>::max();
+  /// If set, the run counts instructions instead of times: cases with several threads or a device
+  /// become `unsupported`. The executor must have the same CounterSource.
   std::optional<CounterSource> counted_by = std::nullopt;
 
-  /// Without time limits.
+  /// Without time limits, for any number of frames.
   static RunPolicy unlimited(CheckMode check) {
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
     return {.check = check, .frame_limit_seconds = kNoLimit, .initialize_limit_seconds = kNoLimit};
@@ -44,9 +59,10 @@ struct RunPolicy {
 
 /// Executes a case in any number of passes, each with a fresh instance in the same executor.
 ///
-/// An algorithm's exception becomes the status, and ends the pass; only InputError and Cancelled
-/// reach the caller. The end of the executor's process is a status, too: the next start() has a new
-/// process. Any number of CaseRuns may exist at the same time, on one thread or on several.
+/// An algorithm's exception becomes the status, and ends the pass; only its InputError and
+/// Cancelled reach the caller, after the end of the pass. The end of the executor's process is a
+/// status, too: the next start() has a new process. Any number of CaseRuns may exist at the same
+/// time, on one thread or on several; each is used by one thread at a time.
 ///
 /// If the answer is events, CaseRun checks the set of pairs accumulated since the initial pose,
 /// and that each event is possible.
@@ -58,8 +74,9 @@ class CaseRun {
                    const ExecutorFactory& make_executor = makeInProcessExecutor,
                    CancelQuery cancelled = {});
 
+  /// The case given to the constructor.
   [[nodiscard]] const Case& description() const { return case_; }
-  /// As BroadPhase::margin().
+  /// As BroadPhase::margin(), in world units.
   [[nodiscard]] float margin() const { return margin_; }
   /// Whether check() checks answers.
   [[nodiscard]] bool checks() const {
@@ -70,20 +87,26 @@ class CaseRun {
   /// Disables checks of further answers.
   void stopChecking() { policy_.check = CheckMode::off; }
 
-  /// Starts a pass with a fresh instance at the initial pose. Returns whether the pass is running:
-  /// limits of the processor, the number of bodies or the time become a status. Throws InputError
-  /// for a nonexistent device.
+  /// Starts a pass with a fresh instance at the initial pose, frame 0, after stop(). Returns
+  /// whether the pass is running: limits of the processor, the number of bodies or the time become
+  /// a status. Throws InputError for a nonexistent device. Copies the scene, and the boxes unless
+  /// the frame lists its changes.
   bool start(const SceneInfo& scene, const Frame& first);
   /// Runs and times the four phases on the next frame. Returns whether the pass still runs: an
-  /// exceeded time limit ends it, but the frame counts. Only while running().
+  /// exceeded time limit or RunPolicy::max_frames ends it, but the frame counts and has an answer;
+  /// a failure inside the algorithm leaves none. Only while running(). O(bodies) besides the
+  /// algorithm's work, unless the frame lists its changes.
   bool step(const Frame& frame);
-  /// Checks the answer for this frame, the last one run; nullopt unless checks(). Only while
-  /// answered().
+  /// Checks the answer for this frame, the last one run; a mismatch becomes the status, and the
+  /// pass runs on. Nullopt unless checks(), or if the executor fails to deliver the answer. Throws
+  /// as the oracle. Only while answered().
   std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
-  /// Ends the pass and frees the instance.
+  /// Ends the pass, if any, and frees the instance.
   void stop();
 
+  /// The first status but ok of all passes: start() does not reset it.
   [[nodiscard]] Status status() const { return status_; }
+  /// The cause; after a mismatch also that of the first failure. "" while ok.
   [[nodiscard]] const std::string& reason() const { return reason_; }
   /// Whether step() may be called.
   [[nodiscard]] bool running() const { return has_instance_ && !ended_; }
@@ -93,18 +116,22 @@ class CaseRun {
   [[nodiscard]] bool hasInstance() const { return has_instance_; }
 
   // For the current pass, or the last one.
+
+  /// 0 if the instance could not be initialised.
   [[nodiscard]] std::int64_t initializeNanoseconds() const { return initialize_ns_; }
-  /// For the last frame.
+  /// For the last frame run.
   [[nodiscard]] const FrameTimes& times() const { return last_.times; }
+  /// As StepResult::pairs, for the last frame run.
   [[nodiscard]] std::uint64_t pairs() const { return last_.pairs; }
-  /// Bodies that changed in the last frame.
+  /// The number of bodies that changed in the last frame, as Frame::changed.
   [[nodiscard]] std::uint64_t changedBodies() const { return changed_count_; }
-  /// The executor's measurements.
+  /// The executor's measurements, complete after stop().
   [[nodiscard]] const PassReport& report() const { return executor_->report(); }
 
   // Queries of the instance, as in CaseExecutor. A failure becomes a status and yields an empty
   // result. Only while hasInstance().
-  /// For events: the accumulated pairs, if checks(); else empty.
+  /// For events: the accumulated pairs, ascending, if checks(); else empty. Valid until the next
+  /// call.
   PairRuns answer();
   Counts counters();
   Counts setup();

@@ -1,4 +1,11 @@
 // Conditions of a case's run that affect its times, besides machine, case and recording.
+//
+// Example:
+//
+//   const auto equallyLong = [](const Conditions& a, const Conditions& b) {
+//     return a.warmup == b.warmup && a.repetitions == b.repetitions;
+//   };
+//   const bool comparable = equallyLong({.warmup = 1, .repetitions = 5}, Conditions());
 #pragma once
 
 #include <optional>
@@ -9,6 +16,8 @@
 
 namespace broadmark {
 
+/// A record for results: it changes nothing. The command line fills it in; runRepetition() sets
+/// only `counted_by` and `pinned`.
 struct Conditions {
   CheckMode check = CheckMode::full;
   int warmup = 0;       ///< unmeasured passes at the start of each repetition
@@ -16,12 +25,13 @@ struct Conditions {
   // Limits in seconds; nullopt: no limit.
   std::optional<double> frame_limit_seconds;
   std::optional<double> initialize_limit_seconds;
-  std::optional<double> call_limit_seconds;  ///< on one call of the algorithm
+  std::optional<double> call_limit_seconds;  ///< on one call, by killing the worker process
   /// What counted instructions, instead of times; nullopt: times were measured.
   std::optional<CounterSource> counted_by;
-  bool in_process = false;            ///< without a worker process of its own
-  bool pinned = false;                ///< each thread to its own core
-  double load_average = 0;            ///< over the last minute, at the start of the case
+  bool in_process = false;  ///< without a worker process of its own
+  bool pinned = false;      ///< each thread to its own core
+  /// Of the machine, over the minute before the recording's first case.
+  double load_average = 0;
   PluginBuild plugin;                 ///< of the algorithm's plug-in
   std::vector<std::string> warnings;  ///< possible disturbances of the times
 };

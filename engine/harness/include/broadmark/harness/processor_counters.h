@@ -1,4 +1,14 @@
 // Hardware performance counters, where the system permits them, or instructions by valgrind.
+//
+// Example:
+//
+//   ProcessorCounters counters;
+//   {
+//     const ProcessorCounters::Counting counting(counters);
+//     // the code to be counted
+//   }
+//   const ProcessorCounts counts = counters.counts();
+//   const std::uint64_t instructions = counts[ProcessorCounter::instructions].value_or(0);
 #pragma once
 
 #include <array>
@@ -30,22 +40,28 @@ inline constexpr NameTable kCounterSources{
 
 /// Counts for the creating thread, and for the threads that it starts afterwards. Most
 /// virtual machines and containers forbid counting: then all counts are nullopt, without an error.
+/// Holds a file descriptor per available counter.
 class ProcessorCounters {
  public:
   /// A counter in the kernel's terms (perf_event_open).
   struct Event {
-    std::uint32_t type = 0;
-    std::uint64_t config = 0;
+    std::uint32_t type = 0;    ///< perf_event_attr::type
+    std::uint64_t config = 0;  ///< perf_event_attr::config
   };
+  /// An event per ProcessorCounter, in its order.
   using Events = std::array<Event, kProcessorCounters.entries.size()>;
 
+  /// Opens the counters, stopped, at zero. CounterSource::valgrind is only for a process started
+  /// under callgrind, by WorkerOptions::valgrind: it truncates that process's descriptor 6.
   explicit ProcessorCounters(CounterSource source = CounterSource::processor);
   /// Substitute events, for tests on machines without access to the processor's counters.
   explicit ProcessorCounters(const Events& events);
 
-  /// Counts during its lifetime.
+  /// Counts during its lifetime, at most one at a time: the end of any stops the counters. Starting
+  /// and stopping take a system call per counter.
   class Counting {
    public:
+    /// `counters` must outlive it.
     explicit Counting(const ProcessorCounters& counters);
     ~Counting();
     Counting(const Counting&) = delete;
@@ -55,11 +71,13 @@ class ProcessorCounters {
     const ProcessorCounters& counters_;
   };
 
+  /// The next counts() start at zero.
   void restart();
-  /// The counts since restart(). With more counters than hardware slots the kernel multiplexes
+  /// The counts during all Countings since restart() or the constructor; by valgrind, only those
+  /// since the last counts(), if any. With more counters than hardware slots the kernel multiplexes
   /// them, and the counts are estimates.
   [[nodiscard]] ProcessorCounts counts() const;
-  /// Whether the processor counts instructions for this process.
+  /// Whether the processor counts instructions for this process; tries it. False under valgrind.
   static bool countInstructions();
 
  private:

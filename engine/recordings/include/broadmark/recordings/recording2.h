@@ -1,6 +1,14 @@
 // Recording 2, .broadmark: for changing worlds, and for large, mostly static ones. A frame holds
 // only changes; periodic key frames hold all boxes and allow seeking. docs/recordings.md
 // describes the bytes; recording.h has the writer.
+//
+// Example:
+//
+//   const auto changesOf = [](const std::filesystem::path& path, std::uint32_t index) {
+//     Recording2Reader recording(path);         // or openRecordingFile(), for any format
+//     const Frame frame = recording.at(index);  // its boxes, filter and changes
+//     return frame.changed->size();
+//   };
 #pragma once
 
 #include <cstdint>
@@ -28,9 +36,13 @@ struct RecordedFrame {
 };
 
 /// Reads a .broadmark recording. Absent bodies have kEmptyBox; all changes are listed. The
-/// next frame costs its changes; any other frame at most two whole frames and its changes.
+/// next frame costs its changes, or a whole frame if it is a key frame; the latest frame again
+/// costs nothing. Any other frame takes its key frame and the changes after it: with our writer at
+/// most two whole frames. If filters change, a frame with changed groups costs O(bodies).
 class Recording2Reader final : public Recording {
  public:
+  /// Opens a file, whatever its extension, and checks header and index. Throws InputError, as does
+  /// the other constructor.
   explicit Recording2Reader(const std::filesystem::path& path);
   /// Reads from an open descriptor, and takes ownership of it; `name` is used in messages.
   Recording2Reader(FileDescriptor file, std::string name);
