@@ -8,8 +8,8 @@
  *
  * If bm_update(), bm_update_changed() or bm_restore() fails by BM_OUT_OF_MEMORY or BM_FAILED, or by
  * BM_MISUSE because the job system did not run each job exactly once, only bm_restore() and
- * bm_destroy() are allowed afterwards, and earlier results are invalid: other updates, queries and
- * bm_save() return BM_MISUSE. */
+ * bm_destroy() are allowed afterwards, and earlier results are invalid: updates, filters, queries,
+ * answers and bm_save() return BM_MISUSE. */
 #ifndef BROADMARK_BROADPHASE_H
 #define BROADMARK_BROADPHASE_H
 
