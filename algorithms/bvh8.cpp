@@ -105,7 +105,7 @@ std::vector<Algorithm> variants() {
                  .changing_worlds = ChangingWorlds::compacted,
                  .instance_per_world = true},
       .description = {.principle = "tree",
-                      .optimisations = "wide nodes, SIMD tests, refitting",
+                      .optimisations = "wide nodes, vector tests, refitting",
                       .time = "O(n log n + k)",
                       .space = "O(n + k)",
                       .source = "Broadmark; Wald, Benthin and Boulos 2008; Wald 2007"}};

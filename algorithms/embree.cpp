@@ -292,7 +292,7 @@ std::vector<Algorithm> variants() {
                                        .library_allocates = true,
                                        .changing_worlds = ChangingWorlds::compacted},
                             .description = {.principle = "tree",
-                                            .optimisations = "wide nodes, SIMD tests",
+                                            .optimisations = "wide nodes, vector tests",
                                             .time = "O(n log n + k)",
                                             .space = "O(n + k)",
                                             .source = "Embree, rtcCollide; Wald et al. 2014"}};

@@ -239,7 +239,7 @@ TEST(Session, UnknownNamesAreSuggested) {
 TEST(Session, MissingPartsAreNamed) {
   expectRefused({"--headless"}, {"no source", "freefall", ".aabbs", "broadmark-scene/1"});
   expectRefused({"bake"}, {"bake", "--output"});
-  expectRefused({"verify"}, {"verify", "files"});
+  expectRefused({"verify"}, {"verify", "no FILE"});
   expectRefused({"compare"}, {"compare", "A"});
   expectRefused({"bake", "freefall", "--output", "o"}, {"bake", "'freefall'"});
   expectSessionRefused({"--json"}, {"--json"});

@@ -215,7 +215,7 @@ TEST(Usage, BashCompletes) {
 TEST(Usage, OfAnUnknownShell) {
   EXPECT_THAT(inputErrorOf([] { parseCommandLine({"completion", "bsh"}); }),
               AllOf(HasSubstr("completion"), HasSubstr("'bsh'"), HasSubstr("'bash'")));
-  EXPECT_THAT(inputErrorOf([] { parseCommandLine({"completion"}); }), HasSubstr("shell"));
+  EXPECT_THAT(inputErrorOf([] { parseCommandLine({"completion"}); }), HasSubstr("no SHELL"));
 }
 
 }  // namespace
