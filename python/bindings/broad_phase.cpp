@@ -222,9 +222,7 @@ class PythonBroadPhase {
    public:
     explicit Use(bool& in_use) : in_use_(in_use) {
       if (in_use_) {
-        throw InputError(
-            "BroadPhase: a call during another one of the same object, from another "
-            "thread");
+        throw InputError("BroadPhase: a concurrent call on the same object, from another thread");
       }
       in_use_ = true;
     }

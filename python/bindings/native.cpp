@@ -134,7 +134,7 @@ ExecutorFactory executorsFor(const Algorithm& algorithm, const std::string& prog
 std::string failureOf(const CaseRun& case_run, const Algorithm& algorithm) {
   std::string text = algorithm.id + ": " + case_run.reason();
   if (algorithm.traits.library_aborts && case_run.status() == Status::error) {
-    text += "; its library ends its process when memory ends";
+    text += "; its library exits when memory runs out";
   }
   return text;
 }

@@ -16,8 +16,8 @@ import sys
 
 if _missing := [name for name in ("numpy", "pandas") if importlib.util.find_spec(name) is None]:
     raise ImportError(
-        f"broadmark needs {' and '.join(_missing)}, which {sys.executable} lacks: Debian's are for "
-        "/usr/bin/python3"
+        f"broadmark needs {' and '.join(_missing)}, which {sys.executable} lacks: Debian's "
+        "packages are for /usr/bin/python3"
     )
 
 from broadmark.arguments import EMPTY_BOX

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
 import os
 import sys
+import warnings
 
 import broadmark
 from broadmark.commands import COMMANDS
@@ -54,7 +56,22 @@ def parser(names: list[str]) -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Runs a command. Bad input prints a line on standard error and returns status 2."""
-    arguments = sys.argv[1:] if arguments is None else arguments
+    if sys.stdout is None:  # closed
+        return _output_failed(OSError(errno.EBADF, os.strerror(errno.EBADF)))
+    try:
+        try:
+            return _run(sys.argv[1:] if arguments is None else arguments)
+        finally:
+            sys.stdout.flush()
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        # What is left of the output cannot be written at exit, either.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _output_failed(error)
+
+
+def _run(arguments: list[str]) -> int:
     # Import only the called command's module: other commands load large libraries.
     names = [name for name in COMMANDS if name in arguments[:1]] or COMMANDS
     options = parser(names).parse_args(arguments)
@@ -66,10 +83,16 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("broadmark: interrupted", file=sys.stderr)
         return 130
-    except BrokenPipeError:  # `… | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _output_failed(error: OSError) -> int:
+    """The exit status after an error of standard output."""
+    if isinstance(error, BrokenPipeError):  # `… | head`
         return 0
+    print(f"broadmark: standard output: cannot be written: {error.strerror}", file=sys.stderr)
+    return 2
 
 
 if __name__ == "__main__":
+    warnings.formatwarning = lambda message, *_, **__: f"broadmark: warning: {message}\n"
     sys.exit(main())

@@ -16,6 +16,7 @@ Floats = npt.NDArray[np.float32]
 
 #: The box of an absent body.
 EMPTY_BOX: Floats = np.array([[np.inf] * 3, [-np.inf] * 3], np.float32)
+EMPTY_BOX.flags.writeable = False
 
 
 def as_boxes(boxes: Any, *, may_be_absent: bool = False) -> Floats:

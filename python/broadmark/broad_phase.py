@@ -38,19 +38,19 @@ class BroadPhase:
             began, ended = broad_phase.began(), broad_phase.ended()
 
     - `method`: the cost of "tide" grows with the number of moving bodies; "columns" finds all pairs
-      anew.
+      in each update.
     - `answer`: "pairs" for `pairs()`, "events" for `began()` and `ended()`.
     - `margin`: each box is enlarged by this on every side, rounded outward.
-    - `layers`: a symmetric matrix of at most 32 rows: whether two layers collide. Without it there
-      are 32, which all collide.
-    - `threads`: None for all cores. Worlds that were built with few bodies use one.
+    - `layers`: a symmetric matrix of at most 32 rows: whether two layers collide. Default: 32
+      layers, which all collide.
+    - `threads`: None for all cores. Worlds that were built with few bodies use one thread.
     - `order`: "sorted" pairs ascend by the first body, then the second: independent of threads,
-      processor, method and history; "any" is as found.
-    - `changes`: what is done with the bodies given to `update`.
+      processor, method and history; "any": in the order of the search.
+    - `changes`: how `update` uses its argument `changed`.
     - `isa`: the instruction set, "auto" for the best one of the processor.
 
-    Bad arguments raise InputError and change nothing. If an update fails by want of memory, only
-    `restore` is allowed afterwards. One thread at a time; other objects may be used meanwhile.
+    Bad arguments raise InputError and change nothing. If an update runs out of memory, only
+    `restore` is allowed afterwards. Only one thread at a time may use an object.
     docs/embedding.md describes costs and limits.
     """
 
@@ -87,14 +87,14 @@ class BroadPhase:
     def update(self, boxes: Any, changed: Any = None) -> None:
         """Takes the boxes of all bodies, and finds the answer. Body i has `boxes[i]`.
 
-        `boxes` is an array (n, 2, 3) or (n, 6): min x y z, max x y z. One of 32-bit floats is read
-        where it lies, without a copy, if the coordinates of a corner are contiguous. Other numbers
-        are converted and rounded outward: min down, max up. Touching boxes overlap. Bodies may come
-        and go: an absent one has EMPTY_BOX; n may change.
+        `boxes` is an array (n, 2, 3) or (n, 6): min x y z, max x y z. An array of 32-bit floats is
+        read in place, without a copy, if the coordinates of a corner are contiguous. Other numbers
+        are converted and rounded outward: min down, max up. Touching boxes overlap. Bodies may
+        appear and disappear: an absent body has EMPTY_BOX; n may change.
 
-        `changed`: the bodies that moved, appeared or vanished; others do no harm. Verified changes
-        (the default): all boxes are compared, and a changed body that is not listed is an error.
-        Trusted ones: only the listed bodies and new ones are read.
+        `changed`: the bodies that moved, appeared or vanished; it may list others, too. Verified
+        changes (the default): all boxes are compared, and a changed body that is not listed is an
+        error. Trusted changes: only the listed bodies and new ones are read.
 
         Releases the GIL: no other thread may write to `boxes` meanwhile.
         """
@@ -113,11 +113,11 @@ class BroadPhase:
         return self._answer(self._native.pairs)
 
     def began(self) -> Pairs:
-        """The pairs of the last update that were none before, if the answer is "events"."""
+        """The pairs that began in the last update, if the answer is "events"."""
         return self._answer(self._native.began)
 
     def ended(self) -> Pairs:
-        """The pairs that ceased to be some in the last update, if the answer is "events"."""
+        """The pairs that ended in the last update, if the answer is "events"."""
         return self._answer(self._native.ended)
 
     @staticmethod
@@ -152,10 +152,10 @@ class BroadPhase:
         """The bodies hit by rays, or by boxes that move: (starts, bodies, fractions), as for
         `overlapping`. Ascending by fraction, then body; of each ray the closest hit, or all.
 
-        `origins`: points (n, 3), or boxes as in `update`. `directions` (n, 3): a body that is hit
-        when the origin has moved by half of it has the fraction 0.5; by all of it, 1, which is the
+        `origins`: points (n, 3), or boxes as in `update`. `directions` (n, 3): the motions of the
+        origins. A hit after half of the motion has the fraction 0.5, at its end 1, which is the
         default of `max_fraction` (a number, or one for each; inf: no limit). Points and directions
-        are rounded to 32-bit floats. No hit is missed; what misses within rounding is a hit.
+        are rounded to 32-bit floats. No hit is missed; a miss within rounding errors may be a hit.
         """
         points = np.asanyarray(origins)
         if points.ndim == 2 and points.shape[1] == 3:
@@ -181,8 +181,8 @@ class BroadPhase:
         layers: Iterable[int] | None = None,
     ) -> tuple[Starts, Bodies, npt.NDArray[np.float64]]:
         """The `count` bodies nearest to each of `points` (n, 3): (starts, bodies, distances), as for
-        `overlapping`. Ascending by distance to the body's box, then body. Fewer, if there are not so
-        many, up to `max_distance` away (a number, or one for each)."""
+        `overlapping`. Ascending by distance to the body's box, then body. Fewer if no more are within
+        `max_distance` (a number, or one for each)."""
         vectors = as_vectors("points", points)
         limits = as_limits("max_distance", max_distance, len(vectors))
         count = as_integer("count", count, 0, NO_TAG)

@@ -92,6 +92,11 @@ def draw_pages(
         return [path]
     paths = [path]
     if len(pages) > 1:
+        if is_standard_output(path):
+            raise InputError(
+                f"-o -: standard output takes one page, not {len(pages)}: name a file (a .pdf has all), "
+                "or choose with --scene, --objects or --filter"
+            )
         names = [re.sub(r"[^\w.+-]+", "-", name).strip("-") for name, _ in pages]
         names = [
             name if names.count(name) == 1 else f"{name}-{i}" for i, name in enumerate(names, 1)

@@ -15,20 +15,23 @@ from broadmark.errors import InputError
 @contextlib.contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[Any]:
     """A binary file that replaces `path` once it is complete and on the disk. An error removes it.
-    "-" is standard output."""
+    A symbolic link's target is replaced. "-" is standard output."""
     if is_standard_output(path):
         sys.stdout.flush()
         yield sys.stdout.buffer
         return
-    path = pathlib.Path(path)
-    partial = path.with_name(path.name + f".{os.getpid()}.partial")
+    if os.path.exists(path) and not os.path.isfile(path):
+        # Renaming over a device (/dev/null) would replace it.
+        raise InputError(f"{path}: cannot be written: not a regular file")
+    target = pathlib.Path(os.path.realpath(path))
+    partial = target.with_name(target.name + f".{os.getpid()}.partial")
     try:
         with open(partial, "wb") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        os.replace(partial, path)
-        sync_folder(path.parent)
+        os.replace(partial, target)
+        sync_folder(target.parent)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None
     finally:

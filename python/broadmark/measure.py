@@ -17,8 +17,9 @@ import numpy.typing as npt
 
 from broadmark.arguments import Floats, as_integer
 from broadmark.errors import InputError
-from broadmark.program import Names, Path, as_source, call, run
-from broadmark.recordings import EXTENSIONS, PoseRecording, Recording, read_recording
+from broadmark.program import BOXES, Names, Path, as_source, call, run
+from broadmark.recording2 import ChangingRecording
+from broadmark.recordings import PoseRecording, Recording, read_recording
 from broadmark.results import PHASES, Results, read_results
 
 Answers = list[npt.NDArray[np.uint32]]
@@ -52,7 +53,8 @@ def measure(
     pass it gets the initial pose first, whose time is that of the initialisation, and whose answer is
     not checked. A class is instantiated for every pass, so that it can keep its state.
 
-    `source` is a recording, arrays as in `run`, or a scene with `objects` to `param` as in `run`.
+    `source` is a recording, an imported file, boxes as in `run`, or a scene with `objects` to `param` as
+    in `run`. A function gets no layers, tags, worlds or periodic box: recordings with these are refused.
     `warmup` passes precede each measured one. `margin`: pairs count as right if the boxes overlap
     once each is enlarged by it. `name`: of the algorithm; by default the function's. All work counts as
     `search_overlaps`.
@@ -62,15 +64,19 @@ def measure(
     """
     as_integer("repetitions", repetitions, 1, 1_000_000)
     as_integer("warmup", warmup, 0, 1_000_000)
+    if not isinstance(name, str | None):
+        raise InputError(f"name {name!r}: expected a text")
     label = name or _name_of(function)
     scene: dict[str, Any] = {"objects": objects, "object_type": object_type, "frames": frames}
     scene |= {"seed": seed, "param": param}
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
-        opened = as_source(source, folder)
-        path = _recording_of(opened, scene, folder)
+        opened = as_source(source, folder, **scene)
+        recording = read_recording(_recording_of(opened, scene, folder))
+        assert not isinstance(recording, PoseRecording)
+        _require_boxes_only(recording)
         passes = []
         for number in range(repetitions * (1 + warmup)):
-            measured = _run_pass(function, path)
+            measured = _run_pass(function, recording)
             if number % (1 + warmup) == warmup:
                 passes.append(measured)
         checked: list[Results] = []
@@ -85,6 +91,7 @@ def measure(
             "algorithm": label,
             "family": "Python",
             "plugin": "",
+            "params": details["params"] if margin else {},
             "initialize_ns": [one.initialize_ns for one in passes],
             "peak_bytes": None,
             "processor": {key: [None] * repetitions for key in details["processor"]},
@@ -109,7 +116,8 @@ def measure(
         cases, summed = os.path.join(folder, "cases.json"), os.path.join(folder, "summed.json")
         results.save(cases)
         call("merge", cases, "--json", summed)
-        return read_results(summed).renamed(f"measure({label})", ["measure", label])
+        passed = None if opened is source else BOXES
+        return read_results(summed).renamed(f"measure({label})", ["measure", label], passed)
 
 
 def _name_of(function: Any) -> str:
@@ -117,33 +125,53 @@ def _name_of(function: Any) -> str:
     return re.sub(r"[^\w.-]+", "", name) or "function"
 
 
-def _recording_of(source: Path, scene: dict[str, Any], folder: str) -> pathlib.Path:
-    """The source if it is a recording, else the recording of a simulation."""
+def _recording_of(source: Path | list[Path], scene: dict[str, Any], folder: str) -> pathlib.Path:
+    """The source if it is a recording of boxes, else a recording of it."""
+    if not isinstance(source, (str, os.PathLike)):
+        raise InputError("source: several, expected one")
     path = pathlib.Path(source)
-    if path.suffix in EXTENSIONS:
+    if path.suffix in (".aabbs", ".broadmark"):
         return path
+    boxes = pathlib.Path(folder, "recorded.aabbs")
+    if path.suffix == ".posrot":
+        call("convert", os.fspath(path), os.fspath(boxes), "--quiet")
+        return boxes
     recorded = pathlib.Path(folder, "recorded")
     options: dict[str, Any] = {**scene, "record": recorded, "recorder": "broadmark"}
     run(source, algorithm="none", check="off", **options)
     found = list(recorded.rglob("*.broadmark"))
+    if not found:  # not a simulation
+        call("import", os.fspath(path), "--output", os.fspath(recorded), "--quiet")
+        found = list(recorded.parent.glob("recorded.*"))
     if len(found) != 1:
-        raise InputError(f"{source}: stands for {len(found)} recordings, expected one")
+        raise InputError(f"{source}: expands to {len(found)} recordings, expected one")
     return found[0]
 
 
-def _frames_of(path: pathlib.Path) -> Iterator[Floats]:
+def _require_boxes_only(recording: Recording | ChangingRecording) -> None:
+    """Raises InputError if the pairs do not depend on the boxes alone."""
+    if not isinstance(recording, ChangingRecording):
+        return
+    groups = recording.groups
+    has_filter = recording.filter_changes or (0, 0) not in groups.colliding_layers
+    has_filter |= any(part is not None for part in (groups.layers, groups.worlds, groups.tags))
+    if has_filter or recording.periodic is not None:
+        raise InputError(
+            f"{recording.name}: its pairs depend on layers, tags, worlds or a periodic box, which the "
+            "function does not get"
+        )
+
+
+def _frames_of(recording: Recording | ChangingRecording) -> Iterator[Floats]:
     """An own array for each frame."""
-    recording = read_recording(path)
-    if isinstance(recording, PoseRecording):
-        raise InputError(f"{path}: holds poses, expected a recording of boxes")
     if isinstance(recording, Recording):
         yield from (np.array(boxes, np.float32, order="C") for boxes in recording.boxes)
     else:
         yield from (boxes.copy() for boxes, _ in recording.frames())
 
 
-def _run_pass(function: Any, path: pathlib.Path) -> _Pass:
-    frames = _frames_of(path)
+def _run_pass(function: Any, recording: Recording | ChangingRecording) -> _Pass:
+    frames = _frames_of(recording)
     clock = time.perf_counter_ns
     first = next(frames)
     start = clock()
@@ -162,9 +190,9 @@ def _run_pass(function: Any, path: pathlib.Path) -> _Pass:
 def _as_pairs(answer: Any, frame: int) -> npt.NDArray[np.uint32]:
     """The answer with the smaller body first, sorted."""
     try:
-        pairs = np.asarray(answer if hasattr(answer, "__len__") else list(answer))
+        pairs = np.asarray(answer if hasattr(answer, "__getitem__") else list(answer))
     except (TypeError, ValueError) as error:
-        raise InputError(f"frame {frame}: the answer is no array of pairs: {error}") from None
+        raise InputError(f"frame {frame}: the answer is not an array of pairs: {error}") from None
     if pairs.size == 0:
         return np.empty((0, 2), np.uint32)
     is_valid = pairs.ndim == 2 and pairs.shape[1] == 2 and pairs.dtype.kind in "iu"

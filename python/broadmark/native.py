@@ -6,7 +6,7 @@ import functools
 import importlib.util
 import os
 import pathlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from types import ModuleType
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from broadmark.arguments import as_boxes, as_threads
 from broadmark.errors import InputError
-from broadmark.program import find_program
+from broadmark.program import Path, find_program
 
 
 def overlaps(
@@ -25,18 +25,18 @@ def overlaps(
     threads: int | None = None,
     isa: str = "auto",
     parameters: dict[str, Any] | None = None,
-    plugin: str | os.PathLike[str] | None = None,
+    plugin: Path | Iterable[Path] | None = None,
 ) -> npt.NDArray[np.uint32]:
     """All pairs of overlapping boxes: an (m, 2) array of indices, the smaller index first.
 
     `boxes` is an array (n, 2, 3) or (n, 6): min x y z, max x y z. 32-bit floats are not converted;
     other numbers are rounded outward: min down, max up. Touching boxes overlap. The order of the
     pairs depends on the algorithm. Only parallel algorithms use `threads` (default: all cores). The
-    call releases the GIL. `plugin` is a library with more algorithms (docs/plugins.md). Plug-ins, and
-    libraries that end the process when memory ends (Bullet, ODE), run in a process of their own; all
-    others in this one.
+    call releases the GIL. `plugin`: libraries with more algorithms (docs/plugins.md). Plug-ins,
+    and libraries that end the process when memory runs out (Bullet, ODE), run in a process of their
+    own; all others in this one.
 
-    Raises InputError for other shapes, NaN, inverted boxes and unknown names, and when memory ends.
+    Raises InputError for other shapes, NaN, inverted boxes and unknown names, or if memory runs out.
     """
     texts = {name: str(value) for name, value in (parameters or {}).items()}
     array = np.ascontiguousarray(as_boxes(boxes))
@@ -44,11 +44,19 @@ def overlaps(
         program = find_program()
     except InputError:
         program = ""  # few algorithms need it
-    file = "" if plugin is None else os.path.abspath(plugin)
-    pairs: npt.NDArray[np.uint32] = native().overlaps(
-        array, str(algorithm), as_threads(threads), str(isa), texts, file, program
+    plugins = [plugin] if isinstance(plugin, (str, os.PathLike)) else plugin or ()
+    file, *others = [os.path.abspath(path) for path in plugins] or [""]
+    try:
+        pairs: npt.NDArray[np.uint32] = native().overlaps(
+            array, str(algorithm), as_threads(threads), str(isa), texts, file, program
+        )
+        return pairs
+    except InputError as error:
+        if not others or "has no algorithm" not in str(error):
+            raise
+    return overlaps(
+        array, algorithm, threads=threads, isa=isa, parameters=parameters, plugin=others
     )
-    return pairs
 
 
 def _folders() -> Iterator[pathlib.Path]:

@@ -15,11 +15,15 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from broadmark.errors import InputError
-from broadmark.recordings import write_recording
+from broadmark.recording2 import ChangingRecording, write_copy
+from broadmark.recordings import PoseRecording, Recording, write_recording
 from broadmark.results import Results, read_results
 
 #: The environment variable with the program's path.
 VARIABLE = "BROADMARK"
+
+#: Stands for the file of a recording that was passed as boxes.
+BOXES = "boxes from Python"
 
 #: The schema of a run request.
 RUN_SCHEMA = "broadmark-run/1"
@@ -155,6 +159,9 @@ def _json_value(value: Any) -> Any:
     return list(value) if isinstance(value, Iterable) else str(value)
 
 
+#: Options of `run` for scenes only.
+SCENE_OPTIONS = ("objects", "object_type", "frames", "seed", "density", "engine", "input")
+
 Names = str | Iterable[str]
 Numbers = float | Iterable[float]
 Path = str | os.PathLike[str]
@@ -223,9 +230,10 @@ def run(
 ) -> Results:
     """Runs algorithms and returns their results; the `status` of a case shows whether it failed.
 
-    `source` is a source as on the command line (the name of a scene, a file) or several, or boxes as
-    in `write_recording`; absent bodies have EMPTY_BOX. The other arguments are the program's options,
-    as in a run request (docs/run-requests.md); `broadmark --help` describes them:
+    `source` is a source as on the command line (the name of a scene, a file) or several, a recording
+    of `read_recording`, or boxes as in `write_recording`; absent bodies have EMPTY_BOX. The other
+    arguments are the program's options, as in a run request (docs/run-requests.md); `broadmark --help`
+    describes them:
 
         run("brownian", algorithm="sap*", objects=[1000, 8000], threads=[1, 2], repetitions=5)
 
@@ -233,20 +241,44 @@ def run(
     program rejects the request.
     """
     options = {key: value for key, value in locals().items() if key not in ("source", "show")}
+    for name in ("json", "csv", "csv_frames"):
+        if options[name] == "-" and not show:
+            raise InputError(f"{name}: '-', standard output, needs show=True")
+    scene = {name: options[name] for name in SCENE_OPTIONS}
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
         lines = os.path.join(folder, "results.jsonl")
-        with request_file(**options, source=as_source(source, folder), jsonl=lines) as path:
+        opened = as_source(source, folder, **scene)
+        with request_file(**options, source=opened, jsonl=lines) as path:
             quiet = [] if show else ["--quiet"]
             call("--headless", "--request", path, *quiet, accept=WITH_RESULTS, show=show)
-        return read_results(lines)
+        results = read_results(lines)
+    recording = None if opened is source else BOXES
+    # Without the temporary files.
+    words = results.files["command"][0][1:]
+    command = [word for word in words if folder not in word and word not in ("--request", path)]
+    return results.renamed(f"run({recording or _text(source)})", command, recording)
 
 
-def as_source(source: Any, folder: str) -> Any:
-    """A source for the program: boxes are written as a recording in `folder`."""
+def as_source(source: Any, folder: str, **scene: Any) -> Any:
+    """A source for the program: boxes are written as a recording in `folder`. The options `scene` are
+    for scenes only."""
     if isinstance(source, (str, os.PathLike)):
         return source
     if isinstance(source, (list, tuple)) and source and isinstance(source[0], (str, os.PathLike)):
         return source
+    if isinstance(source, PoseRecording):
+        raise InputError("source: a recording of poses: pass the path of its file instead")
+    for name, value in scene.items():
+        if value is not None:
+            raise InputError(f"{name}: for scenes, but the source is boxes")
+    if isinstance(source, Recording):
+        path = os.path.join(folder, "boxes.aabbs")
+        name, object_type, world = source.name, source.object_type, source.world
+        write_recording(path, source.boxes, name=name, object_type=object_type, world=world)
+        return path
     path = os.path.join(folder, "boxes.broadmark")  # holds absent bodies, unlike .aabbs
-    write_recording(path, source)
+    if isinstance(source, ChangingRecording):
+        write_copy(path, source)
+    else:
+        write_recording(path, source)
     return path

@@ -191,7 +191,7 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
     require(start["magic"] == MAGIC, f"does not begin with {MAGIC.decode()}")
     require(trailer["magic"] == MAGIC, f"does not end with {MAGIC.decode()}: the file is truncated")
     offset = START.itemsize + int(start["header_bytes"])
-    require(offset <= size and offset % ALIGNMENT == 0, "the header states a wrong size of itself")
+    require(offset <= size and offset % ALIGNMENT == 0, "the header states a wrong size for itself")
     try:
         header = json.loads(content[START.itemsize : offset].tobytes())
         schema = header["schema"]
@@ -283,6 +283,12 @@ def _require_index(
         or (~is_key & (index["key"] != before)).any()
     ):
         raise InputError(f"{path}: the index does not match the frames")
+
+
+def write_copy(path: str, recording: ChangingRecording) -> None:
+    """Writes a recording as it was read."""
+    with atomic_write(path) as file:
+        file.write(recording._content)
 
 
 class Writer:

@@ -140,7 +140,7 @@ def write_recording(
     frames = _validated(boxes, may_be_absent=is_changing)
     first = next(frames, None)
     if first is None:
-        raise InputError(_too_few(path, 0))
+        raise InputError(_too_few(0))
     with atomic_write(path) as file:
         writer: recording2.Writer | _AabbsWriter
         if is_changing:
@@ -165,25 +165,26 @@ def write_recording(
                 bounds = frame_bounds if bounds is None else _merged(bounds, frame_bounds)
             frame_count += 1
         if frame_count < 2:
-            raise InputError(_too_few(path, frame_count))
+            raise InputError(_too_few(frame_count))
         if world is not None:
             bounds = as_boxes(np.asarray(world)[np.newaxis])[0]
         writer.finish(np.zeros((2, 3), np.float32) if bounds is None else bounds)
 
 
-def _groups_of_frames(
-    path: pathlib.Path, groups: recording2.Groups | Iterable[recording2.Groups] | None
-) -> Iterator[recording2.Groups]:
+def _groups_of_frames(path: pathlib.Path, groups: Any) -> Iterator[recording2.Groups]:
     """The groups of each frame, without end if they do not change."""
     if groups is None or isinstance(groups, recording2.Groups):
         yield from itertools.repeat(groups or recording2.Groups())
-    else:
-        yield from groups
-        raise InputError(f"{path}: there are fewer groups than sets of boxes")
+        return
+    for of_frame in groups if isinstance(groups, Iterable) else [groups]:
+        if not isinstance(of_frame, recording2.Groups):
+            raise InputError(f"groups: expected Groups, not type {type(of_frame).__name__}")
+        yield of_frame
+    raise InputError(f"{path}: there are fewer groups than sets of boxes")
 
 
-def _too_few(path: pathlib.Path, frame_count: int) -> str:
-    return f"{path}: expected at least 2 sets of boxes, the initial pose and a frame; got {frame_count}"
+def _too_few(frame_count: int) -> str:
+    return f"boxes: expected at least 2 sets, the initial pose and a frame; got {frame_count}"
 
 
 def _validated(boxes: Iterable[Any], may_be_absent: bool) -> Iterator[Floats]:
@@ -228,6 +229,7 @@ def _merged(a: Floats, b: Floats) -> Floats:
 
 
 def _field(name: str, text: str) -> bytes:
-    if not text.isascii() or not text.isprintable() or not 0 < len(text) < 128:
-        raise InputError(f"{name} '{text}': expected 1 to 127 printable ASCII characters")
+    is_text = isinstance(text, str) and text.isascii() and text.isprintable()
+    if not is_text or not 0 < len(text) < 128:
+        raise InputError(f"{name} {text!r}: expected 1 to 127 printable ASCII characters")
     return text.encode("ascii")

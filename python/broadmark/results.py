@@ -9,7 +9,9 @@ import json
 import os
 import pathlib
 import re
+import warnings
 import zlib
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, TextIO
@@ -47,12 +49,31 @@ SHORT = [
 ]
 
 
+class FrameColumn(pd.Series):  # type: ignore[misc]
+    """A column of a FrameTable."""
+
+    @property
+    def _constructor(self) -> type[FrameColumn]:
+        return FrameColumn
+
+    def groupby(self, *arguments: Any, observed: bool = True, **options: Any) -> Any:
+        return super().groupby(*arguments, observed=observed, **options)
+
+    def value_counts(self, *arguments: Any, **options: Any) -> Any:
+        column = self.cat.remove_unused_categories() if self.dtype == "category" else self
+        return pd.Series.value_counts(column, *arguments, **options)
+
+
 class FrameTable(pd.DataFrame):  # type: ignore[misc]
     """A data frame that groups by the texts that occur: a category without a row is no group."""
 
     @property
     def _constructor(self) -> type[FrameTable]:
         return FrameTable
+
+    @property
+    def _constructor_sliced(self) -> type[FrameColumn]:
+        return FrameColumn
 
     def groupby(self, *arguments: Any, observed: bool = True, **options: Any) -> Any:
         return super().groupby(*arguments, observed=observed, **options)
@@ -138,11 +159,14 @@ class Results:
         with atomic_write(path) as file:
             file.write(gzip.compress(text, mtime=0) if path.suffix == ".gz" else text)
 
-    def renamed(self, file: str, options: list[str]) -> Results:
-        """The same cases as if they were from the run with these options in one file."""
+    def renamed(self, file: str, options: list[str], recording: str | None = None) -> Results:
+        """The same cases as if they were from the run with these options in one file. `recording`: the
+        name of their recording's file, if another."""
         documents = self._documents()
         for document in documents:
             document.file, document.options = file, options
+            for case in document.cases if recording is not None else []:
+                case["recording"] = {**case["recording"], "source": recording}
         return _combined(documents)
 
     def _documents(self) -> list[_Document]:
@@ -201,7 +225,7 @@ def _first_few(names: list[str]) -> str:
 
 
 def is_unknown(value: Any) -> bool:
-    return value is None or isinstance(value, float) and value != value
+    return value is None or value is pd.NA or isinstance(value, float) and value != value
 
 
 #: Exceptions raised by values of an unexpected type or shape.
@@ -209,7 +233,7 @@ _SHAPE_ERRORS = (KeyError, TypeError, IndexError, AttributeError, ValueError, Ov
 
 
 class NotResultsError(InputError):
-    """The file is no results file, but may be a good file of another kind."""
+    """Not a results file; may be a valid file of another kind."""
 
 
 def read_results(
@@ -236,6 +260,8 @@ def _combined(documents: list[_Document]) -> Results:
     environments: list[dict[str, Any]] = []
     details: list[dict[str, Any]] = []
     rows: list[dict[str, Any]] = []
+    files: dict[Any, str] = {}  # by case
+    copies: Counter[tuple[str, str]] = Counter()
     for document in documents:
         indices = [
             _environment_index(environments, environment) for environment in document.environments
@@ -247,28 +273,49 @@ def _combined(documents: list[_Document]) -> Results:
                 number = case.get("environment", 0)
                 row["environment"] = indices[number]
                 row["started"] = str(document.environments[number].get("started") or "")
+                identity = (row["environment"], row["started"], _identity(case))
             except _SHAPE_ERRORS as error:
                 raise InputError(
                     f"{document.file}: case {case.get('id', len(rows))!r}: does not match "
                     f"docs/results.md: {type(error).__name__} {error}"
                 ) from None
+            if identity in files:
+                copies[document.file, files[identity]] += 1
+                continue
+            files[identity] = document.file
             known = {key: np.nan if value is None else value for key, value in row.items()}
             rows.append({"case": len(rows), **known, "file": document.file})
             details.append(case)
+    for (file, other), count in copies.items():
+        warnings.warn(
+            f"{file}: repeats {_plural(count, 'case')} of {other}: left out", stacklevel=3
+        )
     machines = _machine_names(environments)
     columns = ["case", *(column["key"] for column in COLUMNS)]
     columns += ["complete", "warnings", "environment", "started", "file"]
     try:
         cases = pd.DataFrame(rows, columns=columns)
         cases[NUMBERS] = cases[NUMBERS].apply(pd.to_numeric)
-        table = pd.DataFrame(environments, dtype=object)  # integers beside NaN
+        table = pd.DataFrame(environments, dtype=object).apply(_inferred)
     except (OverflowError, TypeError, ValueError) as error:
         names = ", ".join(document.file for document in documents)
         raise InputError(f"{names}: {error}") from None
     cases["machine"] = [machines[number] for number in cases["environment"]]
     table["machine"] = machines
-    files = [_file_row(document) for document in documents]
-    return Results(cases, details, table, pd.DataFrame(files))
+    file_rows: list[dict[str, Any]] = []
+    for document in documents:
+        row = _file_row(document)
+        file_rows += [row] if row not in file_rows else []
+    return Results(cases, details, table, pd.DataFrame(file_rows))
+
+
+def _inferred(column: pd.Series) -> pd.Series:
+    """The column of environments with the type of its values. Integers beside unknown values would
+    become floats."""
+    if not column.isna().any():
+        return column.infer_objects()
+    is_flag = pd.api.types.infer_dtype(column, skipna=True) == "boolean"
+    return column.astype("boolean") if column.name == "dirty" and is_flag else column
 
 
 @dataclass
@@ -416,6 +463,14 @@ def commit_name(environment: dict[str, Any]) -> str:
     if not isinstance(commit, str) or not commit:
         return ""
     return commit[:10] + (" with changes" if environment.get("dirty") is True else "")
+
+
+def _identity(case: dict[str, Any]) -> tuple[str, int]:
+    """What is equal in copies of a case."""
+    large = ("environment", "frames", "frame_counts")
+    facts = {name: value for name, value in case.items() if name not in large}
+    times = b"".join(np.asarray(times).tobytes() for times in case["frames"]["total"])
+    return json.dumps(facts, sort_keys=True, default=np.ndarray.tolist), hash(times)
 
 
 def _check_lengths(case: dict[str, Any]) -> None:

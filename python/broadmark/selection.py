@@ -25,7 +25,9 @@ RECORDING = ["scene", "object_type", "objects"]
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds RESULTS and the options that `read_selected` applies to them."""
-    parser.add_argument("results", nargs="+", metavar="RESULTS", help="results (.json, .jsonl)")
+    parser.add_argument(
+        "results", nargs="+", metavar="RESULTS", help="results files (.json, .jsonl)"
+    )
     parser.add_argument(
         "--machine", metavar="NAME", help="only cases of this machine (part of its name)"
     )
@@ -38,7 +40,7 @@ def read_selected(options: argparse.Namespace, may_be_empty: bool = False) -> Re
     results = read_results(*options.results)
     may_be_empty = may_be_empty and not len(results.cases)
     for path in results.partial:
-        print(f"{path}: partial: the run was not finished", file=sys.stderr)
+        print(f"{path}: partial results: the run was not finished", file=sys.stderr)
     if options.filter is not None and len(results.cases):
         results = results.select(match_ids(results.cases["id"], options.filter))
     if options.machine is not None and len(results.cases):
@@ -91,10 +93,15 @@ def read_cases(options: argparse.Namespace) -> tuple[str, Results]:
     """The name of the only machine, and its results selected by the options of `add_options` and
     `add_case_options`. Raises InputError if no case is left or there are several machines."""
     machine, results = single_machine(read_selected(options))
+    return machine, select_cases(results, options)
+
+
+def select_cases(results: Results, options: argparse.Namespace) -> Results:
+    """The results selected by the options of `add_case_options`. Raises InputError if no case is left."""
     results = results.select(match_cases(results.cases, options))
     if not len(results.cases):
         raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
-    return machine, results
+    return results
 
 
 def match_cases(cases: pd.DataFrame, options: argparse.Namespace) -> pd.Series:
@@ -122,9 +129,11 @@ def match_names(names: pd.Series, patterns: str) -> pd.Series:
     return mask
 
 
-def require_unique(cases: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def require_unique(
+    cases: pd.DataFrame, keys: list[str], choice: str = "choose with --filter"
+) -> pd.DataFrame:
     """The cases, unique in the columns `keys`: a complete case replaces an incomplete case. Raises
-    InputError for cases that are equal in these columns."""
+    InputError for cases that are equal in these columns; `choice`: how to choose between them."""
     cases = cases[cases["complete"] | ~cases.groupby(keys)["complete"].transform("any")]
     duplicates = cases[cases.duplicated(keys, keep=False)]
     if len(duplicates):
@@ -136,7 +145,7 @@ def require_unique(cases: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
                 f"{description}: is in {first['file']} and {second['file']}: give only one of them"
             )
         raise InputError(
-            f"{description}: two cases match, {first['id']} and {second['id']}: choose with --filter"
+            f"{description}: two cases match, {first['id']} and {second['id']}: {choice}"
         )
     return cases
 

@@ -30,9 +30,19 @@ class Page:
     def show(
         self, *paths: pathlib.Path, width: int = 1280, dark: bool = False, program_page: str = ""
     ) -> None:
-        """Writes the report of the results and opens it; a width below 600 emulates a phone."""
-        report = self.folder / "a report.html"
+        """Writes the report of results files and opens it; a width below 600 emulates a phone."""
         results = broadmark.read_results(*paths)
+        self.show_results(results, width=width, dark=dark, program_page=program_page)
+
+    def show_results(
+        self,
+        results: broadmark.Results,
+        *,
+        width: int = 1280,
+        dark: bool = False,
+        program_page: str = "",
+    ) -> None:
+        report = self.folder / "a report.html"
         write_report(results, report, pictures=False, program_page=program_page)
         size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)

@@ -267,7 +267,7 @@ def test_updates_release_the_gil() -> None:
         try:
             broad_phase.pairs()
         except broadmark.InputError as error:
-            assert "a call during another one" in str(error)
+            assert "a concurrent call on the same object" in str(error)
             seen.set()
     worker.join()
     assert seen.is_set()

@@ -222,7 +222,7 @@ def test_arrays_may_have_absent_bodies_and_be_a_sequence(tmp_path: pathlib.Path)
         (np.zeros((3, 2, 5)), r"its shape is \(3, 2, 5\): \(frames, bodies, 2, 3\)"),
         (np.zeros(6), "its shape is"),
         (np.zeros((0, 2, 6)), ".*: it has no frame"),
-        (np.asfortranarray(np.zeros((3, 2, 6))), ".*Fortran's order"),
+        (np.asfortranarray(np.zeros((3, 2, 6))), ".*Fortran order"),
         (np.zeros((2, 2, 6), np.float16), "its type is '<f2': integers, or floats of 32 or 64"),
         (np.zeros((2, 2, 6), complex), "its type is '<c16'"),
         (np.zeros((2, 2, 6), [("a", "f4")]), "its type is"),

@@ -83,6 +83,84 @@ def test_a_scene_is_measured_as_by_run() -> None:
     assert list(own.frames["pairs"]) == list(theirs.frames["pairs"])
 
 
+def test_recordings_and_imported_files_are_measured(tmp_path: pathlib.Path) -> None:
+    boxes = np.array(FRAMES)
+    np.save(tmp_path / "boxes.npy", boxes)
+    rows = [
+        f"{number},{body}," + ",".join(map(str, box.ravel()))
+        for number, frame in enumerate(boxes)
+        for body, box in enumerate(frame)
+    ]
+    header = "frame,id,min_x,min_y,min_z,max_x,max_y,max_z"
+    (tmp_path / "boxes.csv").write_text("\n".join([header, *rows]))
+    broadmark.write_recording(tmp_path / "boxes.aabbs", FRAMES)
+    broadmark.write_recording(tmp_path / "boxes.broadmark", FRAMES)
+    recordings = [broadmark.read_recording(tmp_path / f"boxes.{e}") for e in ("aabbs", "broadmark")]
+    expected = [len(brute_force(frame)) for frame in FRAMES[1:]]
+    for source in (tmp_path / "boxes.npy", str(tmp_path / "boxes.csv"), *recordings):
+        results = broadmark.measure(all_pairs, source)
+        assert list(results.cases["status"]) == ["ok"], source
+        assert list(results.frames["pairs"]) == expected
+        is_file = isinstance(source, (str, pathlib.Path))
+        name = str(source) if is_file else "boxes from Python"
+        assert results.cases["recording_file"][0] == name
+
+
+def test_poses_are_measured(tmp_path: pathlib.Path) -> None:
+    options: dict[str, Any] = {"objects": 20, "frames": 2, "record": tmp_path}
+    theirs = broadmark.run("freefall", algorithm="bf", recorder="posrot", **options)
+    (path,) = tmp_path.rglob("*.posrot")
+    own = broadmark.measure(all_pairs, path)
+    assert list(own.cases["status"]) == ["ok"]
+    assert own.cases["pairs_mean"][0] == theirs.cases["pairs_mean"][0]
+
+
+def test_sources_that_cannot_be_measured(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(broadmark.InputError, match="source: several, expected one"):
+        broadmark.measure(all_pairs, ["brownian", "freefall"])
+    with pytest.raises(broadmark.InputError, match="frames: for scenes, but the source is boxes"):
+        broadmark.measure(all_pairs, FRAMES, frames=3)
+    with pytest.raises(broadmark.InputError, match="no.npy"):
+        broadmark.measure(all_pairs, tmp_path / "no.npy")
+    number: Any = 3
+    with pytest.raises(broadmark.InputError, match="name 3: expected a text"):
+        broadmark.measure(all_pairs, FRAMES, name=number)
+    message = "its pairs depend on layers, tags, worlds or a periodic box, which the function"
+    tags = np.full((40, 3), 2**32 - 1, np.uint32)
+    tags[:, 0] = 1
+    ones = np.ones(40, np.uint32)
+    everything: list[dict[str, Any]] = [{"tags": tags}, {"worlds": ones}, {"colliding_layers": ()}]
+    for groups in everything:
+        path = tmp_path / "filtered.broadmark"
+        broadmark.write_recording(path, FRAMES, groups=broadmark.Groups(**groups))
+        for source in (path, broadmark.read_recording(path)):
+            with pytest.raises(broadmark.InputError, match=f"^Custom: {message}"):
+                broadmark.measure(all_pairs, source)
+    with pytest.raises(broadmark.InputError, match=f"^World: {message}"):
+        broadmark.measure(all_pairs, "world", objects=300, frames=2)
+
+
+def test_boxes_leave_no_path(tmp_path: pathlib.Path) -> None:
+    results = broadmark.measure(all_pairs, FRAMES)
+    assert list(results.cases["recording_file"]) == ["boxes from Python"]
+    assert list(results.cases["file"]) == ["measure(all_pairs)"]
+    results.save(tmp_path / "saved.json")
+    assert "/broadmark-" not in (tmp_path / "saved.json").read_text()
+
+
+def test_parameters_are_those_of_the_measurement() -> None:
+    assert list(broadmark.measure(all_pairs, FRAMES).cases["params"]) == [""]
+    with_margin = broadmark.measure(all_pairs, FRAMES, margin=0.5)
+    assert list(with_margin.cases["params"]) == ["margin=0.5"]
+
+
+def test_pairs_may_be_a_set() -> None:
+    functions = [brute_force, lambda boxes: iter(brute_force(boxes))]
+    for function in functions:
+        results = broadmark.measure(function, FRAMES, name="own")
+        assert list(results.cases["status"]) == ["ok"]
+
+
 def test_wrong_answers_are_found() -> None:
     results = broadmark.measure(lambda boxes: all_pairs(boxes)[1:], FRAMES, name="one-less")
     assert list(results.cases["status"]) == ["mismatch"]
@@ -126,7 +204,7 @@ def test_margins_and_absent_bodies() -> None:
 @pytest.mark.parametrize(
     ("answer", "message"),
     [
-        (5, "frame 1: the answer is no array of pairs"),
+        (5, "frame 1: the answer is not an array of pairs"),
         ([1, 2, 3], r"frame 1: the answer has the shape \(3,\)"),
         ([[0, 1.5]], "frame 1: .* type float64, expected indices"),
         ([[0, -1]], "frame 1: .* expected indices"),
@@ -143,5 +221,5 @@ def test_exceptions_are_passed_on() -> None:
 
     with pytest.raises(ZeroDivisionError):
         broadmark.measure(broken, FRAMES)
-    with pytest.raises(broadmark.InputError, match="stands for 2 recordings"):
+    with pytest.raises(broadmark.InputError, match="expands to 2 recordings"):
         broadmark.measure(all_pairs, "brownian", frames=2, param={"initial_speed": [1, 2]})

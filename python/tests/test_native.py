@@ -169,6 +169,18 @@ def test_plugins_find_the_pairs(library: str, algorithm: str) -> None:
         broadmark.overlaps(boxes, algorithm, plugin="/no/such.so")
 
 
+def test_several_plugins_may_have_the_algorithm() -> None:
+    boxes = boxes_in(12, 300)
+    plugins = [library_of_tests(name) for name in ("libc_sweep.so", "libquick_search.so")]
+    for algorithm in ("c-sweep", "repeated-search"):
+        pairs = broadmark.overlaps(boxes, algorithm, plugin=plugins)
+        assert sorted(map(tuple, pairs.tolist())) == sorted(brute_force(boxes))
+    with pytest.raises(broadmark.InputError, match="has no algorithm 'no-such'"):
+        broadmark.overlaps(boxes, "no-such", plugin=plugins)
+    with pytest.raises(broadmark.InputError, match="unknown parameter 'cells'"):
+        broadmark.overlaps(boxes, "c-sweep", plugin=plugins, parameters={"cells": 3})
+
+
 INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), expected \(n, 2, 3\) or \(n, 6\)"),
     ({"boxes": np.zeros((2, 3, 2))}, "of shape"),

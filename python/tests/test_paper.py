@@ -118,7 +118,8 @@ def test_the_most_threads_and_the_widest_instruction_set_are_used(
 def test_ambiguous_cases_are_rejected(tmp_path: pathlib.Path, command: Any) -> None:
     original = case("Brownian", 1000, "kd", 0.1)
     first = write(tmp_path / "a.json", [original])
-    status, _, error = command("table2", first, first)
+    again = write(tmp_path / "again.json", [case("Brownian", 1000, "kd", 0.2)])
+    status, _, error = command("table2", first, again)
     assert status == 2 and "Brownian Cubes 1000 kd" in error and "give only one of them" in error
     other = {**original, "id": original["id"].replace("/s1/", "/s2/")}
     status, _, error = command("table2", write(tmp_path / "b.json", [original, other]))

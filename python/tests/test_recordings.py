@@ -71,7 +71,7 @@ def test_poses_match_the_boxes_of_the_scene(tmp_path: pathlib.Path) -> None:
 @pytest.mark.parametrize(
     ("boxes", "message"),
     [
-        ([[[0, 0, 0, 1, 1, 1]]], "at least 2 sets of boxes"),
+        ([[[0, 0, 0, 1, 1, 1]]], "boxes: expected at least 2 sets, "),
         ([[[0, 0, 0, 1, 1]]] * 2, r"frame 0: boxes: of shape \(1, 5\)"),
         ([[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, np.nan]]], "frame 1: boxes: body 0"),
         ([[[0, 2, 0, 1, 1, 1]]] * 2, "frame 0: boxes: body 0 has a min"),
@@ -92,6 +92,26 @@ def test_invalid_names_are_rejected(tmp_path: pathlib.Path) -> None:
     for name in ("", "x" * 128, "größer", "a\nb"):
         with pytest.raises(broadmark.InputError, match="printable ASCII"):
             broadmark.write_recording(tmp_path / "a.aabbs", random_boxes(2, 2), name=name)
+
+
+def test_arguments_of_other_types_are_rejected(tmp_path: pathlib.Path) -> None:
+    path, boxes = tmp_path / "a.broadmark", random_boxes(2, 2)
+    number: Any = 3
+    for wrong, message in (
+        ({"name": number}, "name 3: expected 1 to 127 printable ASCII characters"),
+        ({"object_type": number}, "object type 3: "),
+        ({"groups": number}, "groups: expected Groups, not type int"),
+        ({"groups": [broadmark.Groups(), number]}, "groups: expected Groups, not type int"),
+    ):
+        with pytest.raises(broadmark.InputError, match=message):
+            broadmark.write_recording(path, boxes, **wrong)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_empty_box_is_constant() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        broadmark.EMPTY_BOX[0] = 0
+    assert not broadmark.present(broadmark.EMPTY_BOX)
 
 
 def changing_boxes(frames: int, bodies: int) -> Any:
@@ -316,3 +336,19 @@ def test_an_array_file_is_written_by_the_command(tmp_path: pathlib.Path, command
     np.testing.assert_array_equal(broadmark.read_recording(path).boxes, random_boxes(3, 4))
     status, _, error = command("write", tmp_path / "no.npy", "-o", path)
     assert status == 2 and "no.npy" in error
+
+
+def test_an_archive_of_arrays_is_written_by_the_command(
+    tmp_path: pathlib.Path, command: Any
+) -> None:
+    boxes = random_boxes(3, 4)
+    archive, path = tmp_path / "boxes.npz", tmp_path / "mine.broadmark"
+    for arrays in ({"any": boxes}, {"boxes": boxes, "times": np.arange(3)}):
+        np.savez(archive, **arrays)
+        assert command("write", archive, "-o", path) == (0, "", "")
+        np.testing.assert_array_equal(broadmark.read_recording(path).boxes, boxes)
+    np.savez_compressed(archive, first=boxes, second=boxes)
+    status, _, error = command("write", archive, "-o", path)
+    assert status == 2 and "boxes.npz: holds 2 arrays, none named boxes" in error
+    archive.write_bytes(archive.read_bytes()[:-30])
+    assert command("write", archive, "-o", path)[0] == 2

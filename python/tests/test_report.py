@@ -76,6 +76,36 @@ def test_a_missing_recording_has_no_picture(tmp_path: pathlib.Path) -> None:
     assert len(notes) == 1 and notes[0].startswith("Brownian Cubes: no picture")
 
 
+def test_absent_pictures_have_their_reason(tmp_path: pathlib.Path) -> None:
+    def notes_of(source: Any, objects: int = 100) -> list[str]:
+        result = case("sap", objects, 1e-5)
+        result["recording"]["source"] = source
+        path = write_results(tmp_path / "results.jsonl", [result])
+        return write_report(broadmark.read_results(path), tmp_path / "report.html")
+
+    assert notes_of("gone.aabbs") == ["Brownian Cubes: no picture: gone.aabbs: no such file."]
+    quick = {"objects": "1000000", "frames": "4", "seed": "1"}
+    (note,) = notes_of(quick, 1_000_000)
+    assert note == "Brownian Cubes: no picture: too large to be drawn quickly."
+    boxes = np.array([[[[0, 0, 0], [1, 1, 1]]]] * 3, np.float32)
+    (note,) = write_report(broadmark.run(boxes, algorithm="bf"), tmp_path / "report.html")
+    assert note == "Custom Boxes: no picture: its boxes were passed from Python."
+    np.save(tmp_path / "boxes.npy", boxes)
+    imported = broadmark.run(tmp_path / "boxes.npy", algorithm="bf")
+    assert write_report(imported, tmp_path / "report.html") == []
+
+
+def test_files_that_are_not_compared_have_their_names(tmp_path: pathlib.Path) -> None:
+    files = [
+        write_results(tmp_path / f"{cpu}.jsonl", [case("kd", 100, 1e-5)], cpu=cpu)
+        for cpu in ("one", "two")
+    ]
+    results = broadmark.read_results(*files)
+    (note,) = write_report(results, tmp_path / "report.html", pictures=False)
+    assert note.startswith(f"The two files are not compared: {files[0]}: environments[0]: ")
+    assert "before.json" not in note
+
+
 def test_a_missing_d3_names_its_package(
     tmp_path: pathlib.Path, command: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -143,11 +143,35 @@ def test_what_another_file_did_not_ask_for_is_no_gap(opened: Page) -> None:
     more = write_results(opened.folder / "more.jsonl", [*many, case("sap", 200, 4e-5)])
     opened.show(few, more)
     rows = opened.ratios()
-    assert rows["sap"] == ["3.46", "1", "not asked", "2.00", "not run"]  # √(2 · (2 · 3))
+    assert rows["sap"] == ["3.46", "1", "not requested", "2.00", "not run"]  # √(2 · (2 · 3))
     assert rows["bf"][1:] == ["1", "2.00", "not run", "3.00"]
     opened.section("failures")
     assert "sap: on" not in " ".join(opened.texts("#failures li"))
     assert "sap: Brownian Cubes, 400 bodies" in opened.texts("#failures li")
+
+
+def test_what_another_run_in_a_file_did_not_ask_for_is_no_gap(opened: Page) -> None:
+    few = write_results(opened.folder / "few.jsonl", [case("kd", 100, 1e-5), case("bf", 100, 2e-5)])
+    more = write_results(opened.folder / "more.jsonl", [case("kd", 200, 2e-5)])
+    more.write_text(more.read_text().replace("2026-01-02T03", "2026-01-02T04"))
+    both = broadmark.read_results(few) + broadmark.read_results(more)
+    both.save(opened.folder / "both.json")
+    opened.show(opened.folder / "both.json")
+    assert opened.ratios()["bf"] == ["2.00", "", "2.00", "not requested"]
+
+
+def test_builds_of_a_machine_are_one_machine(opened: Page) -> None:
+    files = []
+    for build in ("1.0.0", "2.0.0"):
+        files.append(write_results(opened.folder / f"{build}.jsonl", [case("kd", 100, 1e-5)]))
+        commit = json.dumps({"version": build, "commit": build})[1:-1]
+        text = files[-1].read_text().replace('"version": "1.0.0"', commit)
+        files[-1].write_text(text)
+    opened.show(*files)
+    assert opened.texts("#summary .tile")[3:5] == ["1 machine", "2 builds"]
+    opened.show(files[0], write_results(opened.folder / "r.jsonl", standard_cases(), cpu="Another"))
+    tiles = opened.texts("#summary .tile")
+    assert "2 machines" in tiles and not any("build" in tile for tile in tiles)
 
 
 def test_self_checks_are_no_algorithms_and_come_last(opened: Page) -> None:
@@ -158,7 +182,9 @@ def test_self_checks_are_no_algorithms_and_come_last(opened: Page) -> None:
     assert opened.texts("#cases tbody td:first-child") == ["kd", "none"]
     opened.section("scaling")
     opened.wait("return document.querySelector('#scaling .row-name')")
-    assert opened.texts("#scaling .row-name") == ["kd", "none"]
+    assert opened.texts("#scaling .row-name") == ["kd"]
+    opened.section("worst")
+    assert "none" not in opened.texts("#worst tbody td")
 
 
 def test_a_single_size_is_a_list(opened: Page, standard: pathlib.Path) -> None:
@@ -176,6 +202,40 @@ def test_a_single_size_is_a_list(opened: Page, standard: pathlib.Path) -> None:
     opened.js("document.querySelector('#scaling .symbol').focus()")
     opened.type(Keys.ARROW_DOWN, Keys.ENTER)
     assert opened.find("#details-title").text == "sap"
+
+
+def test_fingers_find_the_rows_of_a_single_size(opened: Page) -> None:
+    heights = []
+    for width in (1280, 390):
+        results = [case("kd", 100, 1e-5), case("bf", 100, 2e-5)]
+        opened.show(write_results(opened.folder / "r.jsonl", results), width=width)
+        opened.section("scaling")
+        opened.wait("return document.querySelectorAll('#scaling .row-name')[1]")
+        y = "[...document.querySelectorAll('#scaling .row-name')].map((n) => n.getBoundingClientRect().y)"
+        first, second = opened.js(f"return {y}")
+        heights.append(second - first)
+    assert heights[0] == pytest.approx(20, abs=1) and heights[1] >= 32
+
+
+def test_commands_need_files(opened: Page) -> None:
+    boxes = np.array([[[[0, 0, 0], [1, 1, 1]]]] * 3, np.float32)
+    saved = broadmark.run(boxes, algorithm="kd")
+    saved.save(opened.folder / "saved.json")
+    shown = {}
+    for name, results in (
+        ("scene", broadmark.run("brownian", algorithm="kd", objects=20, frames=2)),
+        ("boxes", saved),
+        ("saved", broadmark.read_results(opened.folder / "saved.json")),
+    ):
+        opened.show_results(results)
+        opened.section("cases")
+        opened.find("#cases tbody button").click()
+        shown[name] = opened.find("#details").text
+    assert "Without the results file" in shown["scene"]
+    assert "From its results file" not in shown["scene"]
+    for name in ("boxes", "saved"):
+        assert "Boxes from Python: call broadmark.run() with them." in shown[name]
+        assert "broadmark --headless" not in shown[name] and "/tmp/broadmark-" not in shown[name]
 
 
 def test_two_files_are_compared(opened: Page) -> None:
@@ -211,13 +271,17 @@ def test_worst_frames_and_ageing(opened: Page) -> None:
         ageing["frames"][phase] = times
     for counts in ageing["frame_counts"].values():
         counts[:] = [1] * 100
+    ageing["ageing"] = {
+        "early": {"private_bytes": 4096, "moves": 1, "tests": 10},
+        "late": {"private_bytes": 6144, "moves": 1, "tests": 11},
+    }
     opened.show(write_results(opened.folder / "r.jsonl", [ageing, case("bf", 100, 2e-5)]))
     opened.section("worst")
     cells = opened.texts("#worst tbody td")
     assert cells[0] == "bf" and cells[4:7] == ["20.0\u00a0µs", "1.00", "1"]
-    assert cells[7] == "–"  # too few frames
+    assert cells[7:10] == ["–", "–", "–"] and cells[11] == "–"  # too few frames
     kd = cells[cells.index("kd") :]
-    assert kd[4:8] == ["90.0\u00a0µs", "9.00", "30", "4.00"]
+    assert kd[4:10] == ["90.0\u00a0µs", "9.00", "30", "–", "4.00", "1.10"] and kd[11] == "1.50"
 
 
 def test_a_filter_of_statuses_hides_no_gap(opened: Page, standard: pathlib.Path) -> None:

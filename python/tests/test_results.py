@@ -59,6 +59,10 @@ def test_frames_are_grouped_as_numbers_and_texts(small_results: pathlib.Path) ->
     assert list(bf.groupby("algorithm").size().index) == ["bf"]
     assert list(bf.pivot_table("total_ns", "frame", "algorithm")) == ["bf"]
     assert frames.algorithm.dtype == "category" and type(bf.copy()) is type(frames)
+    assert list(bf["total_ns"].groupby(bf["algorithm"]).mean().index) == ["bf"]
+    assert dict(bf.algorithm.value_counts()) == {"bf": len(bf)}
+    assert dict(bf.algorithm.value_counts(normalize=True)) == {"bf": 1}
+    assert dict(bf.threads.value_counts()) == {1: len(bf)}
 
 
 def test_unknown_values_are_nan(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
@@ -85,7 +89,12 @@ def test_builds_of_a_machine_are_told_apart(tmp_path: pathlib.Path, command: Any
         document["environments"][0] |= {"compiler": "gcc 12", "compiler_flags": " -O3"}
         files[-1].write_text(json.dumps(document))
     assert broadmark.read_results(files[0]).cases.machine[0] == "A processor, 8 cores"
-    machines = list(broadmark.read_results(*files).cases.machine.unique())
+    both = broadmark.read_results(*files)
+    environments = both.environments
+    assert environments["dirty"].dtype == bool and environments["logical_cores"].dtype == "int64"
+    assert list(environments[~environments.dirty].machine) == [environments.machine[0]]
+    assert [environments.loc[i].to_dict()["dirty"] is True for i in (0, 1)] == [False, True]
+    machines = list(both.cases.machine.unique())
     assert machines == [
         "A processor, 8 cores, commit 0123456789",
         "A processor, 8 cores, commit 0123456789 with changes",
@@ -94,6 +103,23 @@ def test_builds_of_a_machine_are_told_apart(tmp_path: pathlib.Path, command: Any
     for name in ("table2", "claims"):
         status, out, _ = command(name, files[1])
         assert status == 0 and "Commit 0123456789 with changes, gcc 12, -O3" in out
+
+
+def test_flags_may_be_unknown(tmp_path: pathlib.Path) -> None:
+    files = []
+    for cpu, dirty in (("old", {}), ("clean", {"dirty": False}), ("changed", {"dirty": True})):
+        files.append(write(tmp_path / f"{cpu}.json", [case("Gravity", 1000, "kd", 1e-3)], cpu=cpu))
+        document = json.loads(files[-1].read_text())
+        document["environments"][0] |= dirty
+        files[-1].write_text(json.dumps(document))
+    results = broadmark.read_results(*files)
+    environments = results.environments
+    assert list(environments[environments.dirty].cpu) == ["changed"]
+    assert list(environments[~environments.dirty].cpu) == ["clean"]
+    results.save(tmp_path / "all.json")
+    saved = json.loads((tmp_path / "all.json").read_text())["environments"]
+    assert [environment.get("dirty") for environment in saved] == [None, False, True]
+    assert [type(environment["logical_cores"]) for environment in saved] == [int] * 3
 
 
 def test_results_are_shown_shortly(small_results: pathlib.Path) -> None:
@@ -126,8 +152,12 @@ def test_results_are_added_and_saved(small_results: pathlib.Path, tmp_path: path
         both.save(tmp_path / "saved.csv")
 
 
-def test_several_files_are_combined(small_results: pathlib.Path) -> None:
-    paths = [small_results / "results.json", small_results / "results.jsonl"]
+def test_several_files_are_combined(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    paths = [small_results / "results.json", tmp_path / "later.json"]
+    document = json.loads(paths[0].read_text())
+    for environment in document["environments"]:
+        environment["started"] = "2040-01-01T00:00:00Z"
+    paths[1].write_text(json.dumps(document))
     both = broadmark.read_results(*paths)
     single = broadmark.read_results(paths[0])
     assert len(both.cases) == 2 * len(single.cases)
@@ -135,6 +165,24 @@ def test_several_files_are_combined(small_results: pathlib.Path) -> None:
     assert len(both.environments) == 1  # single machine
     assert both.cases["file"].nunique() == 2
     assert len(both.frames) == 2 * len(single.frames)
+
+
+def test_copies_of_a_case_count_once(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    paths = [small_results / "results.json", small_results / "results.jsonl"]
+    single = broadmark.read_results(paths[0])
+    with pytest.warns(UserWarning, match=r"jsonl: repeats 20 cases of .*results.json: left out"):
+        both = broadmark.read_results(*paths)
+    pd.testing.assert_frame_equal(both.cases, single.cases)
+    assert list(both.files.file) == list(map(str, paths))
+    with pytest.warns(UserWarning, match="repeats 20 cases"):
+        doubled = single + single
+    pd.testing.assert_frame_equal(doubled.cases, single.cases)
+    pd.testing.assert_frame_equal(doubled.files, single.files)
+    slower = json.loads(paths[0].read_text())
+    slower["cases"][0]["frames"]["total"][0][0] += 1
+    (tmp_path / "slower.json").write_text(json.dumps(slower))
+    with pytest.warns(UserWarning, match="repeats 19 cases"):
+        assert len(broadmark.read_results(paths[0], tmp_path / "slower.json").cases) == 21
 
 
 def test_selected_cases_keep_their_frames(small_results: pathlib.Path) -> None:

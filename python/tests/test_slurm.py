@@ -292,3 +292,53 @@ def test_a_rejected_submission_leaves_no_job(
     with pytest.raises(broadmark.InputError, match="merge.sh"):
         slurm.submit(tmp_path / "out/slurm/submit")
     cluster.wait_for_jobs()
+
+
+@pytest.fixture
+def fake_slurm(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
+    """A folder with a `sbatch` that numbers jobs from 1, and nothing else of Slurm."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for name in ("bash", "dirname", "grep", "sort", "printf"):
+        if found := shutil.which(name):
+            (folder / name).symlink_to(found)
+    write_program(folder / "sbatch", 'echo job >>"$0.log"; exec grep -c job "$0.log"')
+    monkeypatch.setenv("PATH", str(folder))
+    return folder
+
+
+def write_program(path: pathlib.Path, script: str) -> None:
+    path.write_text(f"#!/bin/bash\n{script}\n")
+    path.chmod(0o755)
+
+
+def test_nothing_is_submitted_twice_if_squeue_fails(
+    fake_slurm: pathlib.Path, file: pathlib.Path, tmp_path: pathlib.Path, command: Any
+) -> None:
+    arguments = ("campaign", file, "--output", tmp_path / "out", "--slurm")
+    status, out, error = command(*arguments)
+    assert status == 0 and out.startswith("submitted: 1 2 3"), error
+    log = fake_slurm / "sbatch.log"
+    jobs = log.read_text()
+    for script in (None, "echo 1; exit 1"):
+        if script:
+            write_program(fake_slurm / "squeue", script)
+        status, out, error = command(*arguments)
+        assert (status, out) == (2, "") and log.read_text() == jobs
+        line = (
+            "no job was submitted: squeue failed: earlier jobs may be queued; without any, remove "
+        )
+        assert error.count("\n") == 1 and line in error and error.endswith("/slurm/submitted\n")
+    write_program(fake_slurm / "squeue", "echo 2")
+    assert "its jobs are queued already" in command(*arguments)[2]
+    write_program(fake_slurm / "squeue", "echo 12")
+    assert command(*arguments)[0] == 0 and log.read_text() != jobs
+
+
+def test_options_of_sbatch_are_words(
+    file: pathlib.Path, tmp_path: pathlib.Path, command: Any
+) -> None:
+    arguments = ("campaign", file, "--output", tmp_path / "out", "--slurm", "--list")
+    status, out, error = command(*arguments, "--sbatch=--comment='x")
+    assert (status, out) == (2, "")
+    assert error == "broadmark: --sbatch --comment='x: No closing quotation\n"

@@ -75,14 +75,25 @@ def test_other_rows_columns_and_values(results: pathlib.Path, command: Any) -> N
     ]
 
 
+def test_integers_are_exact(tmp_path: pathlib.Path, command: Any) -> None:
+    cases = [case("Brownian", n, "sap", 1e-3) for n in (1000, 2000)]
+    cases[1]["recording"]["seed"] = 123456
+    table = lines(command, write(tmp_path / "r.json", cases), "--value", "seed")
+    assert table[-1].split() == ["sap", "1", "1", "123,456"]
+
+
 @pytest.mark.parametrize(
     "options, message",
     [
-        (["--rows", "algoritm"], "'algoritm' is no column: there are id, "),
+        (["--rows", "algoritm"], "'algoritm' is not a column: expected one of id, "),
         (["--value", "scene"], "--value 'scene': expected one of "),
-        (["--columns", "scene"], "two cases match"),
+        (["--columns", "scene"], "two cases match, "),
+        (
+            ["--columns", "scene"],
+            ": choose with --scene, --algorithm, --objects or --filter, or add ",
+        ),
         (["--relative-to", "algorithm=bf"], "0 rows match, expected one"),
-        (["--relative-to", "isa=scalar"], "'isa' is none of --rows algorithm,threads"),
+        (["--relative-to", "isa=scalar"], "'isa' is not in --rows algorithm,threads"),
     ],
 )
 def test_bad_input(results: pathlib.Path, command: Any, options: list[str], message: str) -> None:
@@ -91,6 +102,6 @@ def test_bad_input(results: pathlib.Path, command: Any, options: list[str], mess
 
 
 def test_the_documents_tables_are_those_of_their_results() -> None:
-    script = [sys.executable, SOURCE_FOLDER / "scripts/tables", "--check"]
+    script: list[Any] = [sys.executable, SOURCE_FOLDER / "scripts/tables", "--check"]
     done = subprocess.run(script, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

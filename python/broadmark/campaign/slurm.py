@@ -36,7 +36,11 @@ SUBMIT = """\
 set -eE
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
 if [ -e submitted ]; then
-  queued=$(squeue --noheader --format=%F | sort -u | grep -xF -f submitted || true)
+  if ! jobs=$(squeue --noheader --format=%F); then
+    echo "squeue failed: earlier jobs may be queued; without any, remove $PWD/submitted" >&2
+    exit 1
+  fi
+  queued=$(sort -u <<<"$jobs" | grep -xF -f submitted || true)
   if [ -n "$queued" ]; then
     echo "its jobs are queued already: wait for them, or scancel" $queued >&2
     exit 1
@@ -120,13 +124,17 @@ def planned_jobs(folder: Folder, ledger: Ledger, copy_to: str | None) -> list[Jo
 
 def write(folder: Folder, jobs: list[Job], sbatch: str) -> pathlib.Path:
     """Writes the jobs' scripts and the script that submits them. Returns the path of the latter."""
+    try:
+        words = shlex.split(sbatch)
+    except ValueError as error:
+        raise InputError(f"--sbatch {sbatch}: {error}") from None
     slurm_folder = folder.path / "slurm"
     slurm_folder.mkdir(exist_ok=True)
     for job in jobs:
         write_text(os.fspath(slurm_folder / f"{job.name}.sh"), _script(folder, job))
     submit = slurm_folder / "submit"
     campaign = folder.path.resolve().name
-    lines = [SUBMIT, *(_submission(campaign, job, sbatch) for job in jobs), SUBMITTED]
+    lines = [SUBMIT, *(_submission(campaign, job, words) for job in jobs), SUBMITTED]
     write_text(os.fspath(submit), "".join(lines))
     submit.chmod(0o755)
     return submit
@@ -143,12 +151,12 @@ def submit(script: pathlib.Path) -> str:
     return completed.stdout.strip()
 
 
-def _submission(campaign: str, job: Job, sbatch: str) -> str:
+def _submission(campaign: str, job: Job, sbatch: list[str]) -> str:
     """The line that submits a job. The user's options come last and take precedence."""
     array = [f"--array=0-{len(job.recordings) - 1}"] if job.recordings else []
     log = f"{job.name}.%a.log" if job.recordings else f"{job.name}.log"
     names = [f"--job-name={campaign}-{job.name}", f"--output={log}"]
-    words = [*array, *names, *job.options, *shlex.split(sbatch)]
+    words = [*array, *names, *job.options, *sbatch]
     after = ",".join(
         f"{condition}:${{{dependency.variable}}}" for condition, dependency in job.after
     )

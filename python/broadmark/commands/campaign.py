@@ -35,13 +35,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="folder for recordings and results (default: the file's name without .json, in the current folder)",
     )
     mode = parser.add_mutually_exclusive_group()
-    mode.add_argument(
-        "--list", action="store_true", help="show the state of the campaign, run nothing"
-    )
-    mode.add_argument("--bake", action="store_true", help="bake missing recordings, run nothing")
-    mode.add_argument(
-        "--merge", action="store_true", help="merge the existing results, run nothing"
-    )
+    mode.add_argument("--list", action="store_true", help="only show the state of the campaign")
+    mode.add_argument("--bake", action="store_true", help="only bake missing recordings")
+    mode.add_argument("--merge", action="store_true", help="only merge the existing results")
     parser.add_argument(
         "--recording", metavar="NAME", help="only this recording, named as by --list"
     )

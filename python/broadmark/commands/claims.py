@@ -1,4 +1,4 @@
-"""Judges the paper's thirteen claims by results: holds, does not hold, not measured.
+"""Judges the paper's thirteen claims by results: each holds, does not hold, or is not measured.
 
 Each verdict is given with the figures, or with the missing results. Cases are chosen as by `table2`.
 Claims about GPUs require results of a GPU.

@@ -15,6 +15,7 @@ import sys
 from broadmark import selection
 from broadmark.drawing import FORMATS, draw
 from broadmark.errors import InputError
+from broadmark.files import is_standard_output
 from broadmark.paper.algorithms import SCENES
 from broadmark.paper.figures import FigureOptions, curves, figure
 from broadmark.paper.times import times_by_machine
@@ -51,6 +52,8 @@ def main(options: argparse.Namespace) -> None:
     for format_ in formats:
         if format_ not in FORMATS:
             raise InputError(f"--format {format_}: expected one of {', '.join(FORMATS)}")
+    if is_standard_output(options.output):
+        raise InputError("-o -: expected a folder, not standard output")
     folder = pathlib.Path(options.output)
     try:
         folder.mkdir(parents=True, exist_ok=True)

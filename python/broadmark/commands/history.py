@@ -22,7 +22,7 @@ import sys
 from broadmark import selection
 from broadmark.drawing import check_format, draw_pages
 from broadmark.errors import InputError
-from broadmark.files import write_text
+from broadmark.files import report_written, write_text
 from broadmark.history.commits import ordered_commits
 from broadmark.history.figure import page, pages
 from broadmark.history.history import History, history
@@ -40,7 +40,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="RESULTS",
         help="results (.json, .jsonl, also .gz), or folders of results",
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="draw an image (.svg, .pdf, .png)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="draw an image (.svg, .pdf, .png); '-': SVG to standard output, instead of the table",
+    )
     parser.add_argument(
         "--column",
         default=TIME,
@@ -75,8 +80,9 @@ def main(options: argparse.Namespace) -> None:
     margin = measure.margin if options.margin is None else _share("--margin", options.margin)
     if options.output:
         check_format(options.output)
-    if options.json == "-" and options.csv == "-":
-        raise InputError("--json and --csv: only one of them can be '-', standard output")
+    outputs = (options.json, options.csv, options.output)
+    if outputs.count("-") > 1:
+        raise InputError("--json, --csv and -o: only one of them can be '-', standard output")
     results = _selected(_read(options.results), options)
     found = history(
         results,
@@ -88,7 +94,7 @@ def main(options: argparse.Namespace) -> None:
     )
     for note in found.notes:
         print(note, file=sys.stderr)
-    if "-" not in (options.json, options.csv):
+    if "-" not in outputs:
         print(text_table(found), end="")
     for path, text in ((options.json, json_text), (options.csv, csv_text)):
         if path is not None:
@@ -120,7 +126,7 @@ def _read(paths: list[str]) -> Results:
 
     results = read_results(*files, skip=skip)
     for path in results.partial:
-        print(f"{path}: partial: the run was not finished", file=sys.stderr)
+        print(f"{path}: partial results: the run was not finished", file=sys.stderr)
     return results
 
 
@@ -147,4 +153,4 @@ def _share(name: str, text: str) -> float:
 def _draw(found: History, path: str) -> None:
     drawn = [(title, functools.partial(page, found, title, ids)) for title, ids in pages(found)]
     for written in draw_pages(path, drawn):
-        print(f"written: {written}")
+        report_written(written)

@@ -20,6 +20,7 @@ from broadmark.results import SHORT
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
+    selection.add_case_options(parser)
     for kind in ("CSV", "Parquet"):
         name = kind.lower()
         parser.add_argument(
@@ -31,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> None:
-    results = selection.read_selected(options)
+    results = selection.select_cases(selection.read_selected(options), options)
     written = False
     for format_, cases, frames in (
         (_csv, options.csv, options.csv_frames),

@@ -1,9 +1,9 @@
-"""Shows a number of each case as a table, with rows and columns of your choice.
+"""Shows one number per case as a table, with rows and columns of your choice.
 
     python3 -m broadmark table results.json --columns scene,objects --relative-to algorithm=cgal
 
-Rows and columns are named as in `read --csv`. Times are in milliseconds, memory is in megabytes, all
-with three digits. A case without the number shows its status. Rows of algorithms are in
+Rows and columns are named as in `read --csv`. Times are in milliseconds, memory is in megabytes, with
+three digits; integers are exact. A case without the number shows its status. Rows of algorithms are in
 ascending order of their number in the last column that they have one in. Self-checks are left out,
 and instruction sets narrower than the widest of a cell.
 """
@@ -32,6 +32,12 @@ SHOWN_UNITS = {"seconds": ("ms", 1e-3), "bytes": ("MB", 1e6)}
 
 MISSING = "–"
 
+#: How to choose between cases of a cell.
+CHOICE = (
+    "choose with --scene, --algorithm, --objects or --filter, or add what differs to --rows or "
+    "--columns"
+)
+
 Key = tuple[Any, ...]  #: the values of the rows' or columns' keys
 
 
@@ -46,7 +52,7 @@ class Table:
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
     selection.add_case_options(parser)
-    keys = dict(type=lambda text: text.split(","), metavar="KEY[,KEY…]")
+    keys: dict[str, Any] = {"type": lambda text: text.split(","), "metavar": "KEY[,KEY…]"}
     parser.add_argument(
         "--rows", default=["algorithm", "threads"], help="default: algorithm,threads", **keys
     )
@@ -72,7 +78,7 @@ def main(options: argparse.Namespace) -> None:
         raise InputError("no case is left: only self-checks")
     for key in [*options.rows, *options.columns]:
         if key not in TITLES:
-            raise InputError(f"'{key}' is no column: there are {', '.join(TITLES)}")
+            raise InputError(f"'{key}' is not a column: expected one of {', '.join(TITLES)}")
     if options.value not in NUMBERS:
         raise InputError(f"--value '{options.value}': expected one of {', '.join(NUMBERS)}")
     environment = results.environments.loc[cases["environment"].iloc[0]].to_dict()
@@ -83,7 +89,7 @@ def _table(cases: pd.DataFrame, environment: dict[str, Any], options: argparse.N
     keys = [*options.rows, *options.columns]
     if "isa" not in keys:
         cases = selection.widest(cases, keys)
-    cases = selection.require_unique(cases, keys)
+    cases = selection.require_unique(cases, keys, CHOICE)
     columns = _in_order(_keys_of(cases, options.columns))
     cells: dict[Key, dict[Key, float | str]] = {}
     for row, column, number, status in zip(
@@ -98,6 +104,8 @@ def _table(cases: pd.DataFrame, environment: dict[str, Any], options: argparse.N
     if "algorithm" in options.rows:
         rows.sort(key=lambda row: _rank(cells[row], columns))
     unit, scale = SHOWN_UNITS.get(UNITS[options.value], (UNITS[options.value], 1))
+    known = cases[options.value].dropna()
+    is_integer = not unit and (known == known.round()).all()
     reference = _reference(rows, options)
     base = None if reference is None else cells[reference]
 
@@ -106,7 +114,8 @@ def _table(cases: pd.DataFrame, environment: dict[str, Any], options: argparse.N
         if isinstance(number, str):
             return number
         if base is None or row == reference:
-            return _digits(number / scale) + (f" {unit}" if base is not None else "")
+            shown = f"{number:,.0f}" if is_integer else _digits(number / scale)
+            return shown + (f" {unit}" if base is not None else "")
         divisor = base.get(column)
         return _digits(number / divisor) if isinstance(divisor, float) and divisor else MISSING
 
@@ -151,7 +160,7 @@ def _reference(rows: list[Key], options: argparse.Namespace) -> Key | None:
     wanted = [part.partition("=") for part in options.relative_to.split(",")]
     for key, _, _ in wanted:
         if key not in options.rows:
-            raise InputError(f"--relative-to: '{key}' is none of --rows {','.join(options.rows)}")
+            raise InputError(f"--relative-to: '{key}' is not in --rows {','.join(options.rows)}")
     found = [
         row
         for row in rows

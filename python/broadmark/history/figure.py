@@ -56,7 +56,7 @@ def page(history: History, title: str, ids: list[str]) -> Figure:
     below = 0.2 + 0.1 * len(note.splitlines()) + 0.17 * math.ceil(len(entries) / legend_columns)
     height = size[1] * rows + 0.55
     figure = Figure(figsize=(width, height + below), layout="constrained")
-    # Without frames, whose corners may be at -0 or 0: output is reproducible.
+    # Without frames: their corners at -0 or 0 would make output irreproducible.
     upper, lower = figure.subfigures(2, 1, height_ratios=[height, below], frameon=False)
     grid = upper.subplots(rows, columns, squeeze=False, sharex=True)
     names = panel_titles(history, ids)

@@ -111,7 +111,6 @@ def history(
         machines = _matching(machines, machine)
         used = [i for i in used if machine_of_row[i] in machines]
     used.sort(key=lambda i: (order.indices[i], results.cases.at[i, "started"], i))
-    used = _without_copies(results, used, machine_of_row, notes)
     runs: list[dict[Any, int]] = [{} for _ in machines]
     groups: dict[Any, list[tuple[int, int]]] = defaultdict(list)
     for i in used:
@@ -177,27 +176,6 @@ def _used(results: Results, measure: Measure, notes: list[str]) -> list[int]:
     return [int(i) for i in cases.index[positive]]
 
 
-def _without_copies(
-    results: Results, used: list[int], machine_of_row: dict[int, Any], notes: list[str]
-) -> list[int]:
-    """The cases, each once: a run may be given in several files."""
-    known: dict[Any, int] = {}
-    kept = []
-    copies: dict[tuple[str, str], int] = defaultdict(int)
-    for i in used:
-        case = results.details[i]
-        times = b"".join(times.tobytes() for times in case["frames"]["total"])
-        started = results.cases.at[i, "started"]
-        key = (machine_of_row[i], started, case["id"], case["recording"]["hash"], times)
-        if known.setdefault(key, i) == i:
-            kept.append(i)
-        else:
-            copies[results.cases.at[i, "file"], results.cases.at[known[key], "file"]] += 1
-    for (file, other), count in copies.items():
-        notes.append(f"{file}: {count} of its results are in {other}, too, and count once")
-    return kept
-
-
 def _require_order(results: Results, numbers: list[int], runs: npt.NDArray[np.int64]) -> None:
     for i in np.flatnonzero(np.diff(runs) == 0):
         first, second = (results.cases.loc[numbers[k]] for k in (i, i + 1))
@@ -207,8 +185,8 @@ def _require_order(results: Results, numbers: list[int], runs: npt.NDArray[np.in
             else f"{first['file']} and {second['file']}"
         )
         raise InputError(
-            f"{where}: {first['id']} is there twice, with different times and the same start "
-            f"'{first['started']}': the order is unknown: give only one of them"
+            f"{where}: {first['id']} occurs twice, with different times and the same start "
+            f"'{first['started']}', so the order is unknown: give only one of them"
         )
 
 

@@ -63,7 +63,7 @@ def machine_labels(machines: list[Machine]) -> list[str]:
 
 
 def _short_processor(name: str) -> str:
-    """`AMD EPYC 9B14` for `AMD EPYC 9B14 96-Core Processor`, and likewise for others."""
+    """The short name of a processor: `AMD EPYC 9B14` for `AMD EPYC 9B14 96-Core Processor`."""
     name = re.sub(r"\((R|TM|r|tm)\)", "", name)
     name = re.sub(r"(\s\d+-Core)?\s(Processor|CPU)\b|\s@.*", "", name)
     return " ".join(name.split())

@@ -52,9 +52,9 @@ def text_table(history: History) -> str:
     for machine in history.machines:
         for step in machine.steps:
             text += (
-                f"{machine.label}: from {history.commits[step.commit].label} the time of all cases "
-                f"together changed by {percent(step.ratio)}: the machine changed, or something they "
-                "share; each is judged relative to the others\n"
+                f"{machine.label}: from {history.commits[step.commit].label} the times of all cases "
+                f"changed by {percent(step.ratio)} in the median: the machine changed, or something "
+                "that they share; each case is judged relative to the others\n"
             )
     for reason, cases in broken_lines(history).items():
         shown = ", ".join(cases[:3]) + (f" and {len(cases) - 3} others" if len(cases) > 3 else "")
@@ -77,8 +77,8 @@ def summary(history: History) -> str:
     )
     if not steps:
         return (
-            f"{shape}: {history.measure.title}: no change of more than {100 * history.margin:g} % "
-            "that is certain"
+            f"{shape}: {history.measure.title}: no certain change of more than "
+            f"{100 * history.margin:g} %"
         )
     kinds = [
         f"{number} {word}" for number, word in zip((above, len(steps) - above), words) if number

@@ -54,8 +54,8 @@ class Cases:
 
 
 def timed_cases(results: Results, *, log: bool, note: str) -> Cases:
-    """The cases with a time: complete, without wrong answers, and no self-checks: their times are no
-    rivals."""
+    """The cases with a time: complete and without wrong answers. Self-checks are left out: their
+    times are not comparable."""
     cases = results.cases
     ok = _reasons(cases) == ""
     if not ok.any():

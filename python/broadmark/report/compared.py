@@ -19,16 +19,23 @@ def comparison(results: Results) -> tuple[dict[str, Any] | None, list[str]]:
     """The comparison of the first with the second file, if there are two that have comparable cases,
     and sentences on why there is none."""
     names = list(dict.fromkeys(results.files["file"])) if len(results.files) else []
-    if len(names) != 2 or not len(results.cases):
+    if len(names) != 2 or results.cases["file"].nunique() != 2:
         return None, []
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
         paths = [os.path.join(folder, f"{side}.json") for side in ("before", "after")]
         for name, path in zip(names, paths):
             results.select(results.cases["file"] == name).save(path)
+
+        def named(text: str) -> str:
+            """The text with the names of the files instead of the temporary paths."""
+            for name, path in zip(names, paths):
+                text = text.replace(path, name)
+            return text
+
         try:
             text = call("compare", *paths, "--json", "-", accept=WITH_COMPARISON)
         except InputError as error:
-            return None, [f"The two files are not compared: {error}."]
+            return None, [f"The two files are not compared: {named(str(error))}."]
     document = json.loads(text)
     number = {
         (file, id_): i
@@ -45,9 +52,7 @@ def comparison(results: Results) -> tuple[dict[str, Any] | None, list[str]]:
             )
     if all(row["ratio"] is None for row in rows):
         return None, []
-    notes = [str(note) for note in document["notes"]]
-    for name, path in zip(names, paths):
-        notes = [note.replace(path, name) for note in notes]
+    notes = [named(note) for note in document["notes"]]
     differences = {text for case in document["cases"] for text in case["conditions"]}
     return {
         "before": names[0],

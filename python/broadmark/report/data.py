@@ -15,7 +15,7 @@ import numpy as np
 
 from broadmark.palette import look_of
 from broadmark.report import labels, rerun
-from broadmark.results import COLUMNS, Results, commit_name, is_unknown
+from broadmark.results import COLUMNS, Results, commit_name, is_unknown, without_build
 
 #: The columns of cases, copied from `Results.cases`; the others belong to the recording.
 CASE_COLUMNS = [column for column in COLUMNS if not column["path"].startswith("recording/")]
@@ -23,10 +23,13 @@ NUMBERS = [column["key"] for column in CASE_COLUMNS if column["kind"] == "number
 TEXTS = [column["key"] for column in CASE_COLUMNS if column["kind"] == "text"] + [
     "warnings",
     "file",
+    "started",
 ]
 
 #: The least number of frames for times at the end beside those at the start.
 MIN_AGEING_FRAMES = 100
+#: The least number of frames with a 99.9th percentile.
+MIN_PERMILLE_FRAMES = 1000
 
 #: The facts of a machine: title and key in the environment.
 FACTS = [
@@ -143,10 +146,11 @@ def _standard_error(case: dict[str, Any]) -> float | None:
 
 
 def _worst_frames(details: list[dict[str, Any]]) -> dict[str, list[Any]]:
-    """Columns: the slowest frame's time and number, from 1, and the median of the last tenth of the
-    frames over that of the first; None without frames, or too few."""
+    """Columns: the slowest frame's time and number, from 1, the 99.9th percentile, and the median of
+    the last tenth of the frames over that of the first; None without frames, or too few."""
     worst: list[Any] = []
     numbers: list[Any] = []
+    nearly_worst: list[Any] = []
     ageing: list[Any] = []
     for case in details:
         repetitions = [times for times in case["frames"]["total"] if len(times)]
@@ -156,11 +160,28 @@ def _worst_frames(details: list[dict[str, Any]]) -> dict[str, list[Any]]:
         )
         worst.append(float(times.max()) / 1e9 if count else None)
         numbers.append(int(times.argmax()) + 1 if count else None)
+        many = count >= MIN_PERMILLE_FRAMES
+        nearly_worst.append(float(np.percentile(times, 99.9)) / 1e9 if many else None)
         tenth = count // 10
         early = float(np.median(times[:tenth])) if count >= MIN_AGEING_FRAMES else 0.0
         ageing.append(float(np.median(times[-tenth:])) / early if early else None)
-    columns = {"worst_seconds": worst, "worst_frame": numbers, "late_over_early": ageing}
+    columns = {
+        "worst_seconds": worst,
+        "worst_frame": numbers,
+        "p999_seconds": nearly_worst,
+        "late_over_early": ageing,
+        "memory_late_over_early": [_late_over_early(case, "private_bytes") for case in details],
+        "tests_late_over_early": [_late_over_early(case, "test") for case in details],
+    }
     return {name: _numbers(values) for name, values in columns.items()}
+
+
+def _late_over_early(case: dict[str, Any], count: str) -> float | None:
+    """The mean of the first count whose name contains `count` in the last tenth of the frames over
+    that in the first tenth."""
+    early, late = (case.get("ageing", {}).get(when, {}) for when in ("early", "late"))
+    name = next((name for name in early if count in name), None)
+    return late.get(name, 0) / early[name] if name and early[name] else None
 
 
 def _counted(case: dict[str, Any]) -> str:
@@ -195,7 +216,8 @@ def _machine(environment: dict[str, Any]) -> dict[str, Any]:
             value = ", ".join(map(str, value))
         if value is not None and value == value and str(value).strip():
             facts.append([title, str(_rounded(value)).strip()])
-    return {"name": environment["machine"], "facts": facts}
+    name = environment["machine"]
+    return {"name": name, "computer": without_build(name), "facts": facts}
 
 
 def _run(row: dict[str, Any]) -> dict[str, Any]:

@@ -59,12 +59,11 @@ def _first_drawn(
     indices: list[int], recordings: list[dict[str, Any]], sources: list[list[str]]
 ) -> dict[str, Any] | str:
     """The picture of the first recording that can be drawn, or the reason for its absence."""
-    reason = "too large to be drawn quickly"
+    reason = ""
     for index in indices:
-        if not _is_quick(recordings[index], sources[index]):
-            continue
         frame = min(MAX_FRAME, recordings[index]["frames"])
         try:
+            _require_drawable(recordings[index], sources[index])
             uri = _drawn(recordings[index], sources[index], frame)
         except InputError as error:
             reason = textwrap.shorten(str(error), 120, placeholder=" …")
@@ -83,11 +82,18 @@ def _by_scene(recordings: list[dict[str, Any]]) -> Iterator[tuple[str, list[int]
         yield scene, sorted(indices, key=lambda index: -int(recordings[index]["objects"]))
 
 
-def _is_quick(recording: dict[str, Any], source: list[str]) -> bool:
-    if recording["file"]:
-        return recording["objects"] <= MAX_BODIES and pathlib.Path(source[0]).exists()
-    frames = min(MAX_FRAME, recording["frames"])
-    return bool(recording["objects"] * frames <= MAX_SIMULATED_BOXES)
+def _require_drawable(recording: dict[str, Any], source: list[str]) -> None:
+    """Raises InputError if there is no source, or drawing it takes long."""
+    if not source:
+        raise InputError("its boxes were passed from Python")
+    if recording["file"] and not pathlib.Path(source[0]).exists():
+        raise InputError(f"{source[0]}: no such file")
+    boxes = recording["objects"] * min(MAX_FRAME, recording["frames"])
+    is_quick = (
+        recording["objects"] <= MAX_BODIES if recording["file"] else boxes <= MAX_SIMULATED_BOXES
+    )
+    if not is_quick:
+        raise InputError("too large to be drawn quickly")
 
 
 def _drawn(recording: dict[str, Any], source: list[str], frame: int) -> str:
@@ -111,9 +117,10 @@ def _drawn(recording: dict[str, Any], source: list[str], frame: int) -> str:
 
 def _check_same(recording: dict[str, Any], path: str) -> None:
     """Raises InputError if the file now holds another recording."""
-    current = read_recording(path)
-    if not isinstance(current, Recording):
+    if pathlib.PurePath(path).suffix != ".aabbs":
         return
+    current = read_recording(path)
+    assert isinstance(current, Recording)
     shape = (recording["frames"] + 1, recording["objects"])
     if current.boxes.shape[:2] != shape:
         raise InputError(f"{path} now holds another recording")

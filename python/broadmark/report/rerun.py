@@ -6,11 +6,12 @@ A command has three parts that many cases share: the source (`source_words`), th
 
 from __future__ import annotations
 
+import os
 import pathlib
 import urllib.parse
 from typing import Any
 
-from broadmark.program import as_options
+from broadmark.program import BOXES, as_options
 
 #: Parameters of a simulation that have their own options; others are passed with --param.
 OPTIONS = ("objects", "object_type", "frames", "seed", "density", "engine")
@@ -23,8 +24,10 @@ def stated_path(results_file: str, stated: str) -> str:
 
 
 def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
-    """The recording file of a case, or its simulation with all parameters."""
+    """The recording file of a case, or its simulation with all parameters; none for BOXES."""
     source = recording["source"]
+    if source == BOXES:
+        return []
     if not isinstance(source, dict):
         return [stated_path(results_file, str(source))]
     parameters = dict(source)
@@ -90,6 +93,9 @@ def address(case: dict[str, Any]) -> str:
 
 
 def again_words(case: dict[str, Any], results_file: str) -> list[str]:
-    """Arguments that run a case again from its results file, which verifies the recording."""
+    """Arguments that run a case again from its results file, which verifies the recording; none without
+    a file."""
+    if case["recording"]["source"] == BOXES or not os.path.exists(results_file):
+        return []
     plugin = as_options(plugin=_plugin(case, results_file))
     return [results_file, "--case", str(case["id"]), *plugin]

@@ -33,8 +33,9 @@ function fillDetails(dialog, testCase) {
     facts("figures", figuresOf(testCase)),
     element("figure", {}),
     element("h3", {}, "Run it again"),
-    ...(testCase.family === "Python" ? [element("p", { class: "muted" }, "A function of Python: by broadmark.measure() with that function, on this recording.")]
-      : commandsOf(testCase)),
+    ...(testCase.family === "Python" ? [element("p", { class: "muted" }, "A Python function: call broadmark.measure() with it, on this recording.")]
+      : testCase.recording.command ? commandsOf(testCase)
+      : [element("p", { class: "muted" }, "Boxes from Python: call broadmark.run() with them.")]),
     copyable("Hash of the recording", testCase.recording.hash || kNoValue, "hash"),
     copyable("Case", testCase.id, "id"),
     element("h3", {}, "Other values"),
@@ -48,9 +49,9 @@ function commandsOf(testCase) {
       { href: `${data.program_page}#${testCase.address}`, target: "_blank", rel: "noopener", "data-name": "browser" },
       "Open in a browser")) : null,
     element("p", { class: "muted" }, "Run these commands in the folder in which this page was written; paths are relative to it."),
-    copyable("From its results file, which verifies the recording",
-             joined("broadmark --headless", testCase.again_command, testCase.condition_command), "again"),
-    testCase.wrong_frames.length ? copyable("Export the smallest recording that shows the fault",
+    testCase.again_command ? copyable("From its results file, which verifies the recording",
+      joined("broadmark --headless", testCase.again_command, testCase.condition_command), "again") : null,
+    testCase.again_command && testCase.wrong_frames.length ? copyable("Export the smallest recording that shows the fault",
       joined("broadmark --headless", testCase.again_command, "--export-case small.aabbs"), "export") : null,
     copyable("Without the results file", joined("broadmark --headless", testCase.recording.command, testCase.variant_command, testCase.condition_command), "command"),
   ];

@@ -18,7 +18,7 @@ function drawFailures(body) {
   failuresTable.show(failed);
   body.replaceChildren(
     failed.length ? failuresTable.node
-      : element("p", { class: "empty" }, shown.length ? "Every case shown has right answers and a time." : "No case matches the filters."),
+      : element("p", { class: "empty" }, shown.length ? "Every case shown has correct answers and a time." : "No case matches the filters."),
     ...(unchecked ? [element("p", { class: "notice" }, `The answers of ${plural(unchecked, "case")} were not checked.`)] : []),
     ...(unfinished ? [element("p", { class: "notice" }, `${plural(unfinished, "case")} ran fewer repetitions than requested because the run was interrupted.`)] : []),
     ...gapLists());

@@ -16,19 +16,20 @@ markLastRuns(cases);
 
 const distinct = (values) => [...new Set(values)];
 
-// The files with cases of a variant, and those with cases on a recording, on each machine.
-const filesWith = new Map();
+// The runs with cases of a variant, and those with cases on a recording, on each machine. Saved results
+// may have several runs in a file.
+const runsWith = new Map();
 for (const testCase of cases) {
   for (const key of [`${testCase.machine} ${testCase.variant}`, testCase.recording]) {
-    if (!filesWith.has(key)) filesWith.set(key, new Set());
-    filesWith.get(key).add(testCase.file);
+    if (!runsWith.has(key)) runsWith.set(key, new Set());
+    runsWith.get(key).add(`${testCase.started} ${testCase.file}`);
   }
 }
 
-// Whether a file has both: then the variant should have run there.
+// Whether a run has both: then the variant should have run there.
 function wasAsked(machine, recording, variant) {
-  const files = filesWith.get(recording);
-  return [...filesWith.get(`${machine} ${variant}`)].some((file) => files.has(file));
+  const runs = runsWith.get(recording);
+  return [...runsWith.get(`${machine} ${variant}`)].some((run) => runs.has(run));
 }
 
 // Squared standard errors of the logarithms of times, from the repetitions: halfway between a case's

@@ -108,12 +108,12 @@ function ratioCell(cell) {
 }
 
 function absenceOf({ testCase, asked }) {
-  if (!testCase) return asked ? "not run" : "not asked";
+  if (!testCase) return asked ? "not run" : "not requested";
   return testCase.status === "ok" ? "no time" : testCase.status;
 }
 
 function cellLines({ testCase, recording, ratio: value, half, tie, asked }, variant) {
-  if (!testCase) return [variant, recording.title, asked ? "not run" : "not asked for in the files with this recording"];
+  if (!testCase) return [variant, recording.title, asked ? "not run" : "not requested in the runs with this recording"];
   if (value === null) return caseLines(testCase);
   const interval = half === null ? "" : `, 95 %: ${ratio(value * Math.exp(-half))} to ${ratio(value * Math.exp(half))}`;
   return [...caseLines(testCase), `${ratio(value)} times the best${interval}${tie && value > 1 ? ": no slower within the noise" : ""}`];

@@ -1,7 +1,7 @@
 // A row per case, the fastest first: its name, its time on a logarithmic axis with the interval, and in
 // figures. Cases without a time follow, with their status.
 
-const kRowHeight = 20;
+const kRowHeight = matchMedia("(max-width: 640px), (pointer: coarse)").matches ? 32 : 20;  // for fingers, as in report.css
 
 // chart: kind, title, machine, x {domain, ticks, format}, cases.
 function drawRows(container, chart) {
@@ -11,7 +11,7 @@ function drawRows(container, chart) {
     return;
   }
   const timeOf = (c) => (isTimed(c) ? c[view.measure] : Infinity);
-  const rows = chart.cases.slice().sort((a, b) => isSelfCheck(a) - isSelfCheck(b) || timeOf(a) - timeOf(b));
+  const rows = chart.cases.slice().sort((a, b) => timeOf(a) - timeOf(b));
   const width = Math.max(260, container.clientWidth);
   const longest = d3.max(rows, (c) => nameOf(c).length);
   const margin = { left: Math.min(width * 0.45, 14 + 6.6 * longest), right: 60, top: 4, bottom: 20 };

@@ -2,7 +2,7 @@
 // single number of bodies: a row per variant.
 
 function drawScaling(body) {
-  const latest = shown.filter((c) => !c.superseded);
+  const latest = shown.filter((c) => !c.superseded && !isSelfCheck(c));
   body.replaceChildren();
   if (!latest.length) { body.append(element("p", { class: "empty" }, "No case matches the filters.")); return; }
   const variants = drawnVariants(latest, body);

@@ -2,6 +2,7 @@
 
 function drawSummary() {
   const versions = distinct(machines.map((machine) => factOf(machine, "Program version")).filter(Boolean));
+  const computers = distinct(machines.map((machine) => machine.computer)).length;
   const started = data.runs.map((run) => run.started).filter(Boolean).sort();
   byId("title").textContent = data.title;
   byId("subtitle").textContent = [
@@ -10,7 +11,8 @@ function drawSummary() {
   byId("summary").append(
     element("div", { class: "tiles" },
       tile(cases.length, "case"), tile(recordings.length, "recording"),
-      tile(distinct(cases.filter((c) => !isSelfCheck(c)).map((c) => c.algorithm)).length, "algorithm"), tile(machines.length, "machine"),
+      tile(distinct(cases.filter((c) => !isSelfCheck(c)).map((c) => c.algorithm)).length, "algorithm"), tile(computers, "machine"),
+      machines.length > computers ? tile(machines.length, "build") : null,
       element("div", { class: "tile statuses" }, statusCounts())),
     ...warnings().map((text) => element("p", { class: "notice" }, text)),
     ...gallery(),
@@ -56,13 +58,13 @@ function warnings() {
     const build = factOf(machine, "Build type");
     if (build && !/^Rel/.test(build)) texts.push(`${machine.name}: a ${build} build; its times are not representative.`);
   }
-  const disturbed = new Map();
+  const counts = new Map();
   for (const testCase of cases) {
-    for (const text of testCase.warnings.split("; ").filter(Boolean)) disturbed.set(text, (disturbed.get(text) || 0) + 1);
+    for (const text of testCase.warnings.split("; ").filter(Boolean)) counts.set(text, (counts.get(text) || 0) + 1);
   }
-  const sorted = [...disturbed].sort((a, b) => b[1] - a[1]);
-  texts.push(...sorted.slice(0, 6).map(([text, number]) => `Disturbed: ${text} (${plural(number, "case")}).`));
-  if (sorted.length > 6) texts.push(`Disturbed: ${plural(sorted.length - 6, "more kind of warning", "more kinds of warnings")}; see the details of each case.`);
+  const sorted = [...counts].sort((a, b) => b[1] - a[1]);
+  texts.push(...sorted.slice(0, 6).map(([text, number]) => `Warning: ${text} (${plural(number, "case")}).`));
+  if (sorted.length > 6) texts.push(`${plural(sorted.length - 6, "more kind of warning", "more kinds of warnings")}; see the details of each case.`);
   const superseded = cases.filter((c) => c.superseded).length;
   if (superseded) texts.push(`${plural(superseded, "case was", "cases were")} run again later; charts show only the last run, the table shows all runs.`);
   return texts;
