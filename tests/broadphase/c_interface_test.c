@@ -197,8 +197,10 @@ static void test_queries(void) {
 
   const bm_box_query wrong = {{{0, 0, 0}, {1, -1, 1}}, BM_ALL_LAYERS};
   EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, &wrong, 1, &bodies), "query 0: min");
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, NULL, 1, &bodies), "queries: a null");
-  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, about, 1, NULL), "results: a null");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, NULL, 1, &bodies),
+               "queries: must not be null");
+  EXPECT_ERROR(BM_INVALID_ARGUMENT, bm_overlapping(object, about, 1, NULL),
+               "results: must not be null");
 
   /* Through an edge of body 9, from below all bodies. */
   bm_cast_query ray = {{{0, 0, 0}, {0, 0, 0}}, {0, 0, 4}, INFINITY, BM_ALL_LAYERS};
