@@ -184,8 +184,8 @@ void ThreadTeam::wake(int workers) {
 void ThreadTeam::start(int workers, Job job) {
   if (workers == 1) return job.call(job.context, 0);
   job_ = job;
-  failed_ = false;  // a job may have thrown before parallel_for_ did
   if (parallel_for_) {
+    failed_ = false;  // in the last run a job may have thrown before parallel_for_ did
     parallel_for_(workers, [this](int worker) { runJob(worker); });
   } else {
     busy_.store(workers - 1, std::memory_order_relaxed);

@@ -55,23 +55,22 @@ class FrameCounter {
     const std::size_t before = frames_done_ - 1;
     addToMean(result_.pairs_mean, case_run.pairs(), before);
     result_.pairs_max = std::max(result_.pairs_max, case_run.pairs());
-    Counts counters = case_run.counters();
+    const Counts counters = case_run.counters();
     for (const auto& [name, count] : counters) addToMean(result_.counters[name], count, before);
-    if (const auto bytes = case_run.report().private_bytes) counters["private_bytes"] = *bytes;
-    addToAgeing(counters, before);
+    addToAgeing(counters, case_run.report().private_bytes, before);
   }
 
-  void addToAgeing(const Counts& counters, std::size_t frame) {
+  void addToAgeing(const Counts& counters, std::optional<std::uint64_t> private_bytes,
+                   std::size_t frame) {
     constexpr std::size_t kMinFrames = 100;
     const std::size_t frames = result_.recording.scene.frames;
     const std::size_t tenth = frames / 10;
     if (frames < kMinFrames || (frame >= tenth && frame < frames - tenth)) return;
     Ageing& ageing = result_.ageing ? *result_.ageing : result_.ageing.emplace();
-    const bool is_early = frame < tenth;
-    for (const auto& [name, count] : counters) {
-      addToMean((is_early ? ageing.early : ageing.late)[name], count,
-                is_early ? frame : frame - (frames - tenth));
-    }
+    std::map<std::string, double>& means = frame < tenth ? ageing.early : ageing.late;
+    const std::size_t before = frame < tenth ? frame : frame - (frames - tenth);
+    for (const auto& [name, count] : counters) addToMean(means[name], count, before);
+    if (private_bytes) addToMean(means["private_bytes"], *private_bytes, before);
   }
 
   void countBodies(const Frame& frame) {

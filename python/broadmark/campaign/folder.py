@@ -100,7 +100,7 @@ class Folder:
         frames = range(first, last + 1)
         groups: Groups | Iterable[Groups] | None = None
         if isinstance(whole, ChangingRecording):
-            boxes = (boxes for k, (boxes, _) in enumerate(whole.frames()) if k in frames)
+            boxes = (boxes for boxes, _ in itertools.islice(whole.frames(), first, last + 1))
             groups = map(whole.groups_at, frames) if whole.filter_changes else whole.groups
         else:
             boxes = (whole.boxes[k] for k in frames)

@@ -137,8 +137,8 @@ class Evidence:
     def _lacks_gpu(self, name: str) -> bool:
         return is_gpu(BY_NAME[name]) and self.cubes.device.endswith("(a CPU)")
 
-    def missing(self, scene: str, *names: str) -> PartVerdict:
-        """The verdict "not measured" with its reason."""
+    def missing(self, scene: str, *names: str, why: str = "") -> PartVerdict:
+        """The verdict "not measured" or "not comparable" with its reason; `why`: if all were measured."""
         lacking = [name for name in names if self._lacks_gpu(name)]
         if lacking:
             why = f"there is no GPU: the OpenCL device is {self.cubes.device}"
@@ -154,7 +154,10 @@ class Evidence:
         if never:
             why = f"not in these results of {where}"
             return PartVerdict(Outcome.UNMEASURED, ", ".join(never), why)
-        why = f"no size of {where} at which all have a time and the paper prints more than 0.00 s"
+        why = (
+            why
+            or f"no size of {where} at which all have a time and the paper prints more than 0.00 s"
+        )
         return PartVerdict(Outcome.UNMEASURED, ", ".join(names), why)
 
     def _has_other_settings(self, names: list[str], scene: str) -> PartVerdict | None:
@@ -273,12 +276,7 @@ class Evidence:
             verdict = PartVerdict(outcome, name, f"{figures} in {TITLES[scene]}")
             return self._comparable(verdict, name)
         why = f"neither a million objects in {TITLES[scene]} nor past the cap before"
-        verdict = PartVerdict(Outcome.UNMEASURED, name, why)
-        measured = any(
-            self._measurement(self.cubes, scene, objects, name)
-            for objects in self.cubes.sizes(scene)
-        )
-        return verdict if measured else self.missing(scene, name)
+        return self.missing(scene, name, why=why)
 
     def fails_above(self, name: str, limit: int) -> PartVerdict:
         """The algorithm fails with more than `limit` objects."""
